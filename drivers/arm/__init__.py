@@ -1,0 +1,1 @@
+"""Arms that carry the part."""

@@ -1,0 +1,1 @@
+"""Grippers that hold the part."""
