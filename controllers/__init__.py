@@ -1,0 +1,1 @@
+"""From force sample to command: filter, skill, supervisor and gate."""

@@ -1,0 +1,226 @@
+"""The control loop: sample, record, filter, watch; and a step carried out between two ticks.
+
+The cell and the learning environment both run this loop, so they cannot drift apart.
+"""
+
+from dataclasses import dataclass
+
+from controllers.force_filter import ForceFilter
+from controllers.gate import Gate
+from controllers.insertion import REACHED_M, InsertionSkill
+from controllers.messages import (
+    ForceEstimate,
+    Observation,
+    PhaseChange,
+    Proposal,
+    Sent,
+    Severity,
+    SkillPhase,
+    Tick,
+    Verdict,
+)
+from drivers.contract.clock import Clock
+from drivers.contract.errors import DeviceError, DeviceTimeoutError
+from drivers.contract.interfaces import ForceSensor
+from drivers.contract.messages import ForceSample, Pose, StageState, Vector3
+
+_SILENT_PERIODS = 3
+_STEP_TIMEOUT_NS = 5_000_000_000
+"""Longer than any step in the step box takes at creep speed."""
+
+_TICKS_BETWEEN_TRIES = 50
+"""Under a hold a controller is asked again at most every so many samples."""
+_WITHDRAW_REFUSALS = 20
+"""So many refusals in a row end a withdrawal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What came of a proposal, once the stage has settled."""
+
+    sent: Sent
+    hardest: Verdict
+    """The hardest verdict from the proposal to the settled end."""
+    tick: Tick
+    """The last tick; the next proposal is made on it."""
+
+
+class Subscriber:
+    """Follows the loop without a say in it; override what is of interest."""
+
+    def on_sample(self, sample: ForceSample) -> None:
+        """A raw sample has arrived; nothing else has looked at it yet."""
+
+    def on_tick(self, tick: Tick) -> None:
+        """A verdict on the cell's state has been carried out."""
+
+    def on_proposal(self, observation: Observation, proposal: Proposal) -> None:
+        """A controller has answered an observation."""
+
+    def on_sent(self, sent: Sent) -> None:
+        """The gate has answered a proposal."""
+
+    def on_phase(self, change: PhaseChange) -> None:
+        """An insertion has entered a phase."""
+
+
+class ControlLoop:
+    """Turns once per force sample. The first thing to see a sample are the subscribers."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        sensor: ForceSensor,
+        force_filter: ForceFilter,
+        gate: Gate,
+        settle_s: float,
+    ) -> None:
+        self._clock = clock
+        self._sensor = sensor
+        self._filter = force_filter
+        self._gate = gate
+        self._settle_s = settle_s
+        self._subscribers: list[Subscriber] = []
+        self._timeout_s = _SILENT_PERIODS / sensor.rate_Hz
+        self._sample: ForceSample | None = None
+        self._proposals = 0
+
+    def follow(self, subscriber: Subscriber) -> None:
+        """Let `subscriber` follow, after those before it."""
+        self._subscribers.append(subscriber)
+
+    def tick(self) -> Tick:
+        """Take one sample, or wait three periods in vain, and watch over the cell once."""
+        estimate: ForceEstimate | None
+        try:
+            sample = self._sensor.read(self._timeout_s)
+        except DeviceTimeoutError:
+            start_ns = self._clock.now_ns()
+            estimate = self._filter.silence(start_ns)
+        else:
+            start_ns = self._clock.now_ns()
+            for subscriber in self._subscribers:
+                subscriber.on_sample(sample)
+            self._sample = sample
+            estimate = self._filter.update(sample)
+        snapshot = self._gate.snapshot(self._clock, self._sample, self._filter.bias, estimate)
+        verdict = self._gate.watch(snapshot)
+        tick = Tick(snapshot, verdict, start_ns, self._clock.now_ns())
+        for subscriber in self._subscribers:
+            subscriber.on_tick(tick)
+        return tick
+
+    def wait(self, duration_s: float) -> Tick:
+        """Turn until `duration_s` has passed; return the last tick."""
+        end_ns = self._clock.now_ns() + round(duration_s * 1e9)
+        tick = self.tick()
+        while tick.end_ns < end_ns:
+            tick = self.tick()
+        return tick
+
+    def tare(self, samples: int, clear_depth_m: float) -> None:
+        """Take a new bias over so many samples; raises TareRefusedError near or in contact."""
+        window = [self.tick() for _ in range(samples)]
+        is_clear = all(
+            t.snapshot.stage is not None and t.snapshot.stage.pose.position[2] <= clear_depth_m
+            for t in window
+        )
+        fresh = {s.sequence: s for t in window if (s := t.snapshot.sample) is not None}
+        self._filter.tare(list(fresh.values()), is_clear)
+
+    def insert(self, skill: InsertionSkill, number: int, source: str) -> None:
+        """Let `skill` lead insertion `number`, its steps signed by `source`, to done or failed."""
+        tick = self.tick()
+        origin = _stage(tick).pose
+        phase: SkillPhase | None = None
+        while True:
+            observation = observe(tick, skill.steps, origin)
+            translation = skill.next_step(observation)
+            if skill.phase is not phase:
+                phase = skill.phase
+                change = PhaseChange(tick.start_ns, number, phase, skill.reason, skill.steps)
+                for subscriber in self._subscribers:
+                    subscriber.on_phase(change)
+            if translation is None:
+                return
+            step = self.step(tick, observation, translation, source)
+            skill.heed(step.hardest, was_sent=step.sent.target is not None)
+            tick = step.tick
+
+    def withdraw(self, depth_m: float, longest_m: float) -> bool:
+        """Lead the stage straight out to `depth_m` in steps of at most `longest_m`.
+
+        Returns False if the supervisor does not let it.
+        """
+        tick = self.tick()
+        origin = _stage(tick).pose
+        refusals = 0
+        while refusals <= _WITHDRAW_REFUSALS:
+            observation = observe(tick, 0, origin)
+            left_m = observation.depth_m - depth_m
+            if left_m <= REACHED_M:
+                return True
+            step = self.step(tick, observation, (0.0, 0.0, -min(longest_m, left_m)), "withdraw")
+            refusals = refusals + 1 if step.sent.target is None else 0
+            tick = step.tick
+        return False
+
+    def step(self, tick: Tick, observation: Observation, translation: Vector3, source: str) -> Step:
+        """Propose a step on the newest tick, have it sent, and turn until the stage has settled.
+
+        Raises DeviceTimeoutError if the stage does not come to rest.
+        """
+        self._proposals += 1
+        proposal = Proposal(observation.stamp_ns, self._proposals, source, translation)
+        for subscriber in self._subscribers:
+            subscriber.on_proposal(observation, proposal)
+        sent = self._gate.send_step(proposal, tick.snapshot, self._clock.now_ns())
+        for subscriber in self._subscribers:
+            subscriber.on_sent(sent)
+        return self._wait_out(sent) if sent.target is None else self._settle(sent)
+
+    def _wait_out(self, sent: Sent) -> Step:
+        """After a refusal, turn until the hold is over or it is time to try again."""
+        hardest = sent.verdict
+        for _ in range(_TICKS_BETWEEN_TRIES):
+            tick = self.tick()
+            hardest = max(hardest, tick.verdict, key=lambda verdict: verdict.severity)
+            if tick.verdict.severity < Severity.HOLD:
+                break
+        return Step(sent, hardest, tick)
+
+    def _settle(self, sent: Sent) -> Step:
+        hardest = sent.verdict
+        deadline_ns = sent.stamp_ns + _STEP_TIMEOUT_NS
+        rest_ns: int | None = None
+        while True:
+            tick = self.tick()
+            hardest = max(hardest, tick.verdict, key=lambda verdict: verdict.severity)
+            if tick.snapshot.stage is None or tick.snapshot.stage.moving:
+                rest_ns = None
+            elif rest_ns is None:
+                rest_ns = tick.start_ns
+            if rest_ns is not None and tick.start_ns - rest_ns >= self._settle_s * 1e9:
+                return Step(sent, hardest, tick)
+            if tick.end_ns > deadline_ns:
+                raise DeviceTimeoutError(
+                    f"the stage has not come to rest within {_STEP_TIMEOUT_NS * 1e-9:.0f} s"
+                )
+
+
+def observe(tick: Tick, steps: int, origin: Pose) -> Observation:
+    """Return what a controller may know after `tick`; `origin` is the pose at the start.
+
+    Raises DeviceError where force or stage have not been heard yet.
+    """
+    estimate, pose = tick.snapshot.estimate, _stage(tick).pose
+    if estimate is None:
+        raise DeviceError("there is no force estimate yet")
+    x, y, z = (p - o for p, o in zip(pose.position, origin.position, strict=True))
+    return Observation(tick.start_ns, steps, estimate.wrench, estimate.std, pose, (x, y, z))
+
+
+def _stage(tick: Tick) -> StageState:
+    if tick.snapshot.stage is None:
+        raise DeviceError("there is no stage state yet")
+    return tick.snapshot.stage

@@ -1,0 +1,441 @@
+"""The gate: the only way to an actuator."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controllers.messages import Rule, Sent, Severity
+from drivers.contract.clock import ManualClock
+from drivers.contract.errors import SafetyError
+from drivers.contract.messages import Pose, StageState, Vector3
+from tests.controllers.builders import (
+    MS,
+    NOW,
+    Bench,
+    arm,
+    gripper,
+    proposal,
+    rules,
+    sample,
+    stage,
+)
+
+OUT_AND_CALM = stage(-300e-6)
+
+
+def send(bench: Bench, translation: Vector3 = (0.0, 0.0, 60e-6), now_ns: int = NOW) -> Sent:
+    seen = bench.see(now_ns)
+    return bench.gate.send_step(proposal(translation, stamp_ns=now_ns), seen, now_ns)
+
+
+def test_a_step_is_sent_and_what_was_sent_is_returned() -> None:
+    bench = Bench()
+    sent = send(bench, (30e-6, 0.0, 60e-6))
+    assert sent.translation == pytest.approx((20e-6, 0.0, 60e-6))
+    assert sent.target is not None
+    assert sent.target.position == pytest.approx((20e-6, 0.0, 1.06e-3))
+    (move,) = bench.stage.moves
+    assert move[0] == sent.target
+    assert move[1] == pytest.approx(sent.speed_m_s)
+    assert move[2] == 0.0
+
+
+def test_a_refused_step_leaves_the_stage_alone() -> None:
+    bench = Bench()
+    bench.gripper.now = gripper(part_held=False)
+    bench.stage.now = stage(-120e-6)
+    sent = send(bench)
+    assert sent.target is None
+    assert sent.verdict.severity is Severity.HOLD
+    assert bench.stage.moves == []
+
+
+def test_a_step_of_nothing_is_not_sent() -> None:
+    bench = Bench()
+    sent = send(bench, (0.0, 0.0, 0.0))
+    assert sent.target == bench.stage.now.pose
+    assert bench.stage.moves == []
+
+
+def test_only_a_watched_snapshot_is_acted_on() -> None:
+    bench = Bench()
+    seen = bench.see()
+    unwatched = seen._replace(now_ns=NOW + MS)
+    with pytest.raises(SafetyError, match="1001000000 ns has not been watched"):
+        bench.gate.send_step(proposal(), unwatched, NOW + MS)
+    with pytest.raises(SafetyError, match="has not been watched"):
+        bench.gate.send_arm(Pose(), unwatched)
+    with pytest.raises(SafetyError, match="has not been watched"):
+        bench.gate.send_valve(False, unwatched)
+    assert (bench.stage.moves, bench.arm.moves, bench.gripper.valve) == ([], [], [])
+
+
+def test_a_broken_force_limit_halts_a_running_move_and_latches() -> None:
+    bench = Bench()
+    send(bench)
+    bench.stage.now = stage(moving=True)
+    bench.see(NOW + MS, (0.071, 0.0, 0.0))
+    assert bench.stage.halts == 1
+    bench.stage.now = stage()
+    assert send(bench, now_ns=NOW + 2 * MS).target is None
+    assert [reason.rule for reason in bench.gate.latched] == [Rule.FORCE]
+    record = bench.gate.reset("A. Operator", NOW + 3 * MS)
+    assert (record.operator, record.stamp_ns) == ("A. Operator", NOW + 3 * MS)
+    assert [reason.rule for reason in record.cleared] == [Rule.FORCE]
+    assert bench.gate.latched == ()
+    assert send(bench, now_ns=NOW + 4 * MS).target is not None
+
+
+def test_a_reset_does_not_hide_a_cause_that_persists() -> None:
+    bench = Bench()
+    bench.see(NOW, (0.071, 0.0, 0.0))
+    bench.gate.reset("A. Operator", NOW)
+    bench.see(NOW + MS, (0.071, 0.0, 0.0))
+    assert [reason.rule for reason in bench.gate.latched] == [Rule.FORCE]
+
+
+def test_a_proposal_that_is_no_number_latches() -> None:
+    bench = Bench()
+    assert send(bench, (math.nan, 0.0, 0.0)).target is None
+    assert send(bench, now_ns=NOW + MS).target is None
+    assert [reason.rule for reason in bench.gate.latched] == [Rule.NON_FINITE]
+
+
+def test_a_hold_halts_stage_and_arm_but_only_what_moves() -> None:
+    bench = Bench()
+    bench.stage.now, bench.arm.now = stage(-300e-6, moving=True), arm()
+    bench.see(NOW, (0.0, 0.0, math.inf))
+    assert (bench.stage.halts, bench.arm.halts) == (1, 0)
+    bench.stage.now, bench.arm.now = stage(-300e-6), arm(moving=True)
+    bench.see(NOW + MS, (0.0, 0.0, math.inf))
+    assert (bench.stage.halts, bench.arm.halts) == (1, 1)
+
+
+def test_a_growing_force_slows_the_running_move() -> None:
+    bench = Bench()
+    sent = send(bench, (20e-6, 0.0, 0.0))
+    bench.stage.now = stage(moving=True)
+    bench.see(NOW + MS, (0.020, 0.0, 0.0))
+    (slowed,) = bench.stage.slowed
+    assert 0.0 < slowed[0] < sent.speed_m_s
+    bench.see(NOW + 2 * MS, (0.010, 0.0, 0.0))
+    assert len(bench.stage.slowed) == 1, "a move is never sped up"
+    bench.see(NOW + 3 * MS, (0.040, 0.0, 0.0))
+    assert bench.stage.slowed[1][0] < slowed[0]
+    assert bench.stage.halts == 0
+
+
+def test_a_stage_state_older_than_the_command_counts_as_moving() -> None:
+    bench = Bench()
+    send(bench)
+    stale = bench.stage.now._replace(stamp_ns=NOW - MS)
+    bench.stage.now = stale
+    seen = bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None)
+    assert seen.stage == stale._replace(moving=True)
+    bench.stage.now = stale._replace(stamp_ns=NOW)
+    seen = bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None)
+    assert seen.stage == bench.stage.now
+
+
+def test_an_arm_state_older_than_the_command_counts_as_moving() -> None:
+    bench = Bench()
+    bench.stage.now = OUT_AND_CALM
+    bench.gate.send_arm(Pose((0.1, 0.0, 0.0)), bench.see())
+    stale = bench.arm.now._replace(stamp_ns=NOW - MS)
+    bench.arm.now = stale
+    assert bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None).arm == stale._replace(
+        moving=True
+    )
+    bench.arm.now = stale._replace(stamp_ns=NOW)
+    assert bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None).arm == bench.arm.now
+
+
+def test_a_finished_move_is_no_longer_slowed() -> None:
+    bench = Bench()
+    send(bench, (20e-6, 0.0, 0.0))
+    bench.see(NOW + MS, (0.020, 0.0, 0.0))
+    assert bench.stage.slowed == []
+
+
+def overload(bench: Bench, start_ns: int, ticks: int) -> int:
+    """Hold 60 mN for so many steps of 5 ms; 10 mN s are full after 625 ms."""
+    for tick in range(ticks):
+        bench.see(start_ns + tick * 5 * MS, (0.060, 0.0, 0.0))
+    return start_ns + ticks * 5 * MS
+
+
+def test_a_retreat_lets_the_way_out_run_and_halts_everything_else() -> None:
+    bench = Bench()
+    now = overload(bench, NOW, 140)
+    sent = bench.gate.send_step(
+        proposal((0.0, 0.0, -60e-6), stamp_ns=now), bench.see(now, (0.060, 0.0, 0.0)), now
+    )
+    assert sent.target is not None
+    assert sent.verdict.severity is Severity.RETREAT
+    bench.stage.now = stage(moving=True)
+    bench.see(now + MS, (0.060, 0.0, 0.0))
+    assert bench.stage.halts == 0
+
+    bench = Bench()
+    now = overload(bench, NOW, 120)
+    seen = bench.see(now, (0.060, 0.0, 0.0))
+    assert bench.gate.send_step(proposal((1e-6, 0.0, 0.0), stamp_ns=now), seen, now).target
+    bench.stage.now = stage(moving=True)
+    overload(bench, now + 5 * MS, 20)
+    assert bench.stage.halts > 0
+
+
+def test_the_arm_moves_only_in_calm_and_clear() -> None:
+    bench = Bench()
+    bench.stage.now = OUT_AND_CALM
+    bench.gate.send_arm(Pose((0.1, 0.0, 0.0)), bench.see())
+    assert bench.arm.moves == [(Pose((0.1, 0.0, 0.0)), pytest.approx(0.05))]
+    for state, there, text in (
+        (stage(-99e-6), arm(), "depth -99.0 um, valid: at most -100.0 um"),
+        (stage(-300e-6, moving=True), arm(), "only while stage and arm are at rest"),
+        (OUT_AND_CALM, arm(moving=True), "only while stage and arm are at rest"),
+    ):
+        bench.stage.now, bench.arm.now = state, there
+        with pytest.raises(SafetyError, match=text):
+            bench.gate.send_arm(Pose(), bench.see())
+    bench.stage.now, bench.arm.now = OUT_AND_CALM, arm()
+    for wrong in (Pose((math.nan, 0.0, 0.0)), Pose((0.0, 0.0, 0.0), (0.0, math.inf, 0.0))):
+        with pytest.raises(SafetyError, match="not finite"):
+            bench.gate.send_arm(wrong, bench.see())
+    assert len(bench.arm.moves) == 1
+
+
+def test_the_valve_opens_only_clear_of_the_part_and_closes_at_any_depth() -> None:
+    bench = Bench()
+    bench.stage.now = stage(3.2e-3)
+    bench.gate.send_valve(False, bench.see())
+    with pytest.raises(SafetyError, match=r"depth 3200\.0 um"):
+        bench.gate.send_valve(True, bench.see())
+    bench.stage.now = OUT_AND_CALM
+    bench.gate.send_valve(True, bench.see())
+    bench.stage.now = stage(-300e-6, moving=True)
+    with pytest.raises(SafetyError, match="at rest"):
+        bench.gate.send_valve(False, bench.see())
+    assert bench.gripper.valve == [False, True]
+
+
+@pytest.mark.parametrize("force", [(0.071, 0.0, 0.0), (math.nan, 0.0, 0.0)])
+def test_under_a_stop_neither_arm_nor_valve_is_switched(force: Vector3) -> None:
+    bench = Bench()
+    bench.stage.now = OUT_AND_CALM
+    seen = bench.see(NOW, force)
+    with pytest.raises(SafetyError):
+        bench.gate.send_arm(Pose(), seen)
+    with pytest.raises(SafetyError):
+        bench.gate.send_valve(True, seen)
+    assert (bench.arm.moves, bench.gripper.valve) == ([], [])
+
+
+def test_hold_halts_stage_and_arm_at_once_even_if_one_fails() -> None:
+    bench = Bench()
+    bench.gate.hold()
+    assert (bench.stage.halts, bench.arm.halts) == (1, 1)
+
+    def fail() -> None:
+        raise OSError("no route")
+
+    bench.stage.halt = fail  # type: ignore[method-assign]
+    with pytest.raises(OSError, match="no route"):
+        bench.gate.hold()
+    assert bench.arm.halts == 2
+
+
+def test_before_the_first_watch_nothing_is_sent() -> None:
+    bench = Bench()
+    seen = bench.gate.snapshot(ManualClock(0), None, (0.0,) * 6, None)
+    sent = bench.gate.send_step(proposal(stamp_ns=0), seen, 0)
+    assert sent.target is None
+    assert rules(sent.verdict) >= {Rule.MISSING_DATA}
+
+
+def stale(bench: Bench, now_ns: int) -> None:
+    """Watch a cell whose only fault is an old force sample: a hold."""
+    seen = bench.see(now_ns)
+    old = sample(stamp_ns=now_ns - 6 * MS)
+    verdict = bench.gate.watch(seen._replace(sample=old))
+    assert verdict.severity is Severity.HOLD
+
+
+def test_a_hold_halts_even_a_move_out_of_the_part() -> None:
+    for dz in (60e-6, -60e-6):
+        bench = Bench()
+        send(bench, (0.0, 0.0, dz))
+        bench.stage.now = stage(moving=True)
+        stale(bench, NOW + MS)
+        assert bench.stage.halts == 1
+
+
+def test_a_stop_halts_even_a_move_out_of_the_part() -> None:
+    bench = Bench()
+    send(bench, (0.0, 0.0, -60e-6))
+    bench.stage.now = stage(moving=True)
+    bench.see(NOW + MS, (0.071, 0.0, 0.0))
+    assert bench.stage.halts == 1
+
+
+@pytest.mark.parametrize("by_hand", [False, True])
+def test_a_halted_move_is_not_set_going_again_by_the_governor(by_hand: bool) -> None:
+    bench = Bench()
+    send(bench, (20e-6, 0.0, 0.0))
+    bench.stage.now = stage(moving=True)
+    if by_hand:
+        bench.gate.hold()
+    else:
+        stale(bench, NOW + MS)
+    bench.see(NOW + 2 * MS, (0.040, 0.0, 0.0))
+    assert bench.stage.slowed == []
+
+
+def test_without_a_state_the_device_is_halted() -> None:
+    bench = Bench()
+    seen = bench.see()
+    verdict = bench.gate.watch(seen._replace(stage=None, arm=None))
+    assert verdict.severity is Severity.HOLD
+    assert (bench.stage.halts, bench.arm.halts) == (1, 1)
+
+
+def test_an_arm_that_was_never_moved_rests_at_any_stamp() -> None:
+    bench = Bench()
+    bench.arm.now = arm(stamp_ns=0)
+    seen = bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None)
+    assert seen.arm == arm(stamp_ns=0)
+
+
+def test_a_turn_is_sent_with_its_angular_speed() -> None:
+    """1 deg/s on a lever of 4 mm."""
+    bench = Bench()
+    seen = bench.see()
+    turn = proposal((0.0, 0.0, 0.0), rotation=(math.radians(0.05), 0.0, 0.0))
+    sent = bench.gate.send_step(turn, seen, NOW)
+    assert sent.speed_m_s == pytest.approx(69.813e-6, abs=1e-9)
+    (move,) = bench.stage.moves
+    assert move[1:] == (0.0, pytest.approx(math.radians(1.0)))
+
+
+def test_under_a_hold_or_a_retreat_neither_arm_nor_valve_is_switched() -> None:
+    bench = Bench()
+    bench.stage.now = OUT_AND_CALM
+    seen = bench.see()
+    stale(bench, NOW)
+    with pytest.raises(SafetyError, match="stale force sample: age of"):
+        bench.gate.send_arm(Pose(), seen)
+    with pytest.raises(SafetyError, match="stale force sample"):
+        bench.gate.send_valve(True, seen)
+    now = overload(bench, NOW + MS, 140)
+    seen = bench.see(now, (0.060, 0.0, 0.0))
+    with pytest.raises(SafetyError, match="impulse limit"):
+        bench.gate.send_arm(Pose(), seen)
+    with pytest.raises(SafetyError, match="impulse limit"):
+        bench.gate.send_valve(False, seen)
+    assert (bench.arm.moves, bench.gripper.valve) == ([], [])
+
+
+def test_while_a_move_is_slowed_the_valve_waits_for_rest() -> None:
+    bench = Bench()
+    send(bench, (20e-6, 0.0, 0.0))
+    bench.stage.now = stage(moving=True)
+    seen = bench.see(NOW + MS, (0.020, 0.0, 0.0))
+    assert len(bench.stage.slowed) == 1
+    with pytest.raises(SafetyError, match="only while stage and arm are at rest"):
+        bench.gate.send_valve(False, seen)
+
+
+@pytest.mark.parametrize(
+    ("depth_m", "clear"),
+    [(-100.5e-6, True), (-100e-6, True), (math.nextafter(-100e-6, 0.0), False), (-99.5e-6, False)],
+)
+def test_the_clear_depth_itself_is_clear(depth_m: float, clear: bool) -> None:
+    bench = Bench()
+    bench.stage.now = stage(depth_m)
+    seen = bench.see()
+    if clear:
+        bench.gate.send_valve(True, seen)
+    else:
+        with pytest.raises(SafetyError, match="only with the stage clear"):
+            bench.gate.send_valve(True, seen)
+    assert bench.gripper.valve == [True] * clear
+
+
+def test_the_first_standing_verdict_is_a_hold_that_says_why() -> None:
+    bench = Bench()
+    seen = bench.gate.snapshot(ManualClock(0), None, (0.0,) * 6, None)
+    sent = bench.gate.send_step(proposal(stamp_ns=0), seen, 0)
+    first = sent.verdict.reasons[0]
+    assert (first.rule, first.severity) == (Rule.MISSING_DATA, Severity.HOLD)
+
+
+anything = st.floats() | st.sampled_from([0.0, 20e-6, -20e-6, 60e-6, 1.0, math.nan, math.inf])
+vectors = st.tuples(anything, anything, anything)
+plausible = st.floats(-0.3, 0.3)
+places = st.tuples(
+    st.floats(-250e-6, 250e-6), st.floats(-250e-6, 250e-6), st.floats(-1.1e-3, 3.7e-3)
+)
+turns = st.tuples(*[st.floats(-0.02, 0.02)] * 3)
+
+
+@st.composite
+def stage_states(draw: st.DrawFn) -> StageState:
+    velocity = draw(st.just((0.0, 0.0, 0.0)) | st.tuples(*[st.floats(-0.01, 0.01)] * 3))
+    return stage(
+        pose=Pose(draw(places), draw(turns)), velocity=velocity, moving=draw(st.booleans())
+    )
+
+
+@settings(max_examples=300)
+@given(
+    st.lists(
+        st.tuples(
+            st.integers(-2, 30).map(lambda ms: ms * MS),
+            st.tuples(plausible, plausible, plausible) | vectors,
+            stage_states(),
+            vectors | st.tuples(*[st.floats(-1e-4, 1e-4)] * 3),
+            st.just((0.0, 0.0, 0.0)) | vectors,
+            st.integers(-1, 60).map(lambda ms: ms * MS),
+        ),
+        min_size=1,
+        max_size=8,
+    )
+)
+def test_no_command_ever_leaves_the_gate_outside_the_limits(
+    events: list[tuple[int, Vector3, StageState, Vector3, Vector3, int]],
+) -> None:
+    """Whatever is proposed, measured or delayed: 5 mm/s, 1 deg/s, the step box, the workspace."""
+    bench = Bench()
+    now = NOW
+    stopped = False
+    for gap, force, state, translation, rotation, age in events:
+        now += gap
+        bench.stage.now = state
+        seen = bench.see(now, force)
+        stopped = stopped or bool(bench.gate.latched)
+        before = len(bench.stage.moves)
+        wish = proposal(translation, rotation=rotation, stamp_ns=now - age)
+        bench.gate.send_step(wish, seen, now)
+        new = bench.stage.moves[before:]
+        limits = (0.070, 0.100, 1.000)
+        too_hard = any(not abs(f) <= n for f, n in zip(force, limits, strict=True))
+        if stopped or state.moving or too_hard:
+            assert new == []
+        for target, speed, angular_speed in new:
+            assert 0.0 <= speed <= 0.005
+            assert 0.0 <= angular_speed <= math.radians(1.0) * (1.0 + 1e-12)
+            start = state.pose
+            for axis, box in enumerate((20e-6, 20e-6, 60e-6)):
+                assert abs(target.position[axis] - start.position[axis]) <= box + 1e-15
+            for axis, (low, high) in enumerate(
+                ((-200e-6, 200e-6), (-200e-6, 200e-6), (-1e-3, 3.6e-3))
+            ):
+                assert low - 1e-15 <= target.position[axis] <= high + 1e-15
+            assert math.hypot(*target.rotation) <= math.radians(0.6) + 1e-12
+            for turn, turned in zip(start.rotation, target.rotation, strict=True):
+                assert abs(turned - turn) <= math.radians(0.05) + 1e-12
+    for speed, angular_speed in bench.stage.slowed:
+        assert 0.0 <= speed <= 0.005
+        assert 0.0 <= angular_speed <= math.radians(1.0) * (1.0 + 1e-12)
