@@ -1,0 +1,1 @@
+"""The composition root: cell, commands, log, summary and report."""

@@ -1,0 +1,48 @@
+"""The settings of a cell: which files, which devices, and how they are used."""
+
+from typing import Annotated
+
+from annotated_types import Ge, Le, MaxLen, MinLen
+from pydantic import ConfigDict, Field
+
+from controllers.settings import FilterSettings, ProportionalSettings, SkillSettings
+from drivers.contract.settings import MICRO, Settings
+
+_Name = Annotated[str, MinLen(1), MaxLen(80)]
+_FileName = Annotated[str, MinLen(1), MaxLen(1_000)]
+_Coordinate = Annotated[float, Ge(-10_000_000), Le(10_000_000)]
+_Position = Annotated[tuple[_Coordinate, _Coordinate, _Coordinate], MICRO]
+
+
+class BackendChoice(Settings):
+    """A device: the name of its backend; the other keys are the backend's own."""
+
+    model_config = ConfigDict(extra="allow")
+
+    backend: str
+
+
+class ArmPoses(Settings):
+    """Where the arm goes, in the cell's frame."""
+
+    hold_m: _Position = Field(alias="hold_um")
+    """Where the part is held while the shaft is inserted."""
+    tray_m: _Position = Field(alias="tray_um")
+    """Where parts are picked up and put down."""
+
+
+class CellSettings(Settings):
+    """The file of a cell, except for what belongs to the devices' backends."""
+
+    limits: _FileName
+    """File of the machine's limits, relative to the cell's."""
+    part: _FileName
+    """File of the part, relative to the cell's."""
+    force_sensor: BackendChoice
+    stage: BackendChoice
+    arm: BackendChoice
+    gripper: BackendChoice
+    arm_poses: ArmPoses
+    filter: FilterSettings
+    skill: SkillSettings
+    controllers: Annotated[dict[_Name, ProportionalSettings], MinLen(1)]

@@ -1,0 +1,146 @@
+"""Turns what pydantic finds into one line per problem: file, key, value and what is valid."""
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from functools import reduce
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from drivers.contract.errors import ConfigurationError
+from drivers.contract.settings import Settings
+from hil.config.describe import Accepted, keys, unit_of
+
+Place = tuple[str | int, ...]
+"""Keys and list indices that lead to a value."""
+AnySettings = TypeVar("AnySettings", bound=Settings)
+
+_LONGEST = 60
+_OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
+
+
+class Problems:
+    """Collects the problems of a cell's files, so that all are reported at once."""
+
+    def __init__(self) -> None:
+        self._lines: list[str] = []
+
+    def add(self, file: Path, text: str) -> None:
+        """Note the problems of a file, one per line of `text`."""
+        self._lines += [f"{file}: {line}" for line in text.splitlines()]
+
+    def __bool__(self) -> bool:
+        return bool(self._lines)
+
+    def error(self) -> ConfigurationError:
+        """Return the error that tells of all of them."""
+        return ConfigurationError("\n".join(self._lines))
+
+    def validated(
+        self, model: type[AnySettings], values: object, file: Path, *group: str
+    ) -> AnySettings | None:
+        """Return `values` as `model`, or None after noting why not; `group` is where they stand."""
+        try:
+            return model.model_validate(values)
+        except ValidationError as error:
+            for line in _lines(Accepted.of(model), error.errors(), group):
+                self.add(file, line)
+            return None
+
+
+def _lines(root: Accepted, errors: Iterable[ErrorDetails], group: Place) -> list[str]:
+    meant = set()
+    lines = []
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            *before, key = error["loc"]
+            correction, hint = _correction(_accepted(root, before), str(key))
+            meant.add((*before, correction))
+            lines.append(f"{_path(group, error['loc'])} is not a key: {hint}")
+    for error in errors:
+        if error["type"] == "missing" and error["loc"] in meant:
+            continue
+        if error["type"] != "extra_forbidden":
+            lines.append(_line(root, error, group))
+    return list(dict.fromkeys(lines))
+
+
+def _line(root: Accepted, error: ErrorDetails, group: Place) -> str:
+    kind, loc, value = error["type"], error["loc"], error["input"]
+    if kind == "value_error":
+        return str(error["ctx"]["error"])
+    if kind == "missing":
+        parent = _accepted(root, loc[:-1])
+        if parent.is_list:
+            return _invalid(_path(group, loc[:-1]), value, parent.description)
+        unit = unit_of(str(loc[-1]))[1]
+        unit = f", in {unit}" if unit else ""
+        valid = parent.inside(loc[-1]).description
+        return f"{_path(group, loc)} is missing: must be {valid}{unit}"
+    accepted = _accepted(root, loc)
+    valid = accepted.description
+    if kind in _OUT_OF_RANGE:
+        valid = accepted.range
+    elif kind == "finite_number":
+        valid = valid.replace("a number", "a finite number")
+    return _invalid(_path(group, loc), value, valid + _hint(accepted, value))
+
+
+def _accepted(root: Accepted, loc: Iterable[str | int]) -> Accepted:
+    return reduce(Accepted.inside, loc, root)
+
+
+def _invalid(path: str, value: object, valid: str) -> str:
+    return f"{path} = {_shown(value)} is not valid: must be {valid}"
+
+
+def _path(*places: Place) -> str:
+    steps = [f"[{s}]" if isinstance(s, int) else f".{s}" for place in places for s in place]
+    return "".join(steps).removeprefix(".")
+
+
+def _shown(value: object) -> str:
+    text = _flow(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+
+
+def _flow(value: object) -> str:
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{k}: {_flow(v)}' for k, v in value.items())}}}"
+    if isinstance(value, tuple):
+        return f"[{', '.join(_flow(v) for v in value)}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{value}".replace("inf", ".inf").replace("nan", ".nan")
+    return repr(value)
+
+
+def _hint(accepted: Accepted, value: object) -> str:
+    if accepted.is_text and isinstance(value, bool | int | float):
+        return "; put it in quotes"
+    if not accepted.is_number or not isinstance(value, str):
+        return ""
+    if re.fullmatch(_NUMBER, value):
+        return "; write a plain decimal number without quotes"
+    if re.fullmatch(rf"{_NUMBER}\s*[^\W\d_xob][\w/*^]*", value):
+        return "; write the number alone, the key carries the unit"
+    return "; write a plain decimal number" if re.search(r"\d", value) else ""
+
+
+def _correction(group: Accepted, key: str) -> tuple[str, str]:
+    """Return the key that was probably meant, and what to tell."""
+    valid = keys(group.model) if group.model else []
+    for candidate in sorted(valid, key=len, reverse=True):
+        end, unit = unit_of(candidate)
+        stem = candidate.removesuffix(end)
+        if end and f"{key}_".startswith(stem):
+            return candidate, f"did you mean {candidate}? Its unit is {unit}"
+    for candidate in get_close_matches(key, valid, n=1):
+        return candidate, f"did you mean {candidate}?"
+    return "", f"valid keys are {', '.join(valid)}"

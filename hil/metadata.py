@@ -1,0 +1,40 @@
+"""What a log says about the run it holds: configuration, limits, seed, versions."""
+
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+
+from hil.config import CellConfig
+
+_LIBRARIES = ("tenon", "filterpy", "mcap", "numpy", "pydantic", "rosbags", "scipy")
+
+
+def metadata(
+    config: CellConfig, controller: str, insertions: int, seed: int, real_time: bool
+) -> Mapping[str, Mapping[str, str]]:
+    """Return the log's metadata records by name.
+
+    The files of cell, limits and part are held word by word, each with its SHA-256; the limits in
+    force, which a part may have tightened, in SI units.
+    """
+    cell, limits, part = config.sources
+    return {
+        "run": {
+            "controller": controller,
+            "insertions": str(insertions),
+            "seed": str(seed),
+            "time": "real" if real_time else "simulated",
+        },
+        "configuration": {"file": str(cell.path), "text": cell.text, "sha256": cell.sha256},
+        "limits": {
+            "file": str(limits.path),
+            "text": limits.text,
+            "sha256": limits.sha256,
+            "in_force": config.limits.model_dump_json(),
+        },
+        "part": {"file": str(part.path), "text": part.text, "sha256": part.sha256},
+        "versions": {
+            "python": platform.python_version(),
+            **{name: version(name) for name in _LIBRARIES},
+        },
+    }

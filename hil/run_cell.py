@@ -1,0 +1,168 @@
+"""Inserts parts with the cell that a configuration describes, and logs everything to MCAP."""
+
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from enum import IntEnum
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from controllers.messages import SkillPhase
+from drivers.contract.clock import ManualClock, SystemClock
+from drivers.contract.errors import TenonError
+from hil.cell import Cell, Outcome
+from hil.config import load_cell
+from hil.interrupt import Interrupt, InterruptedRunError
+from hil.log_reader import read_log
+from hil.metadata import metadata
+from hil.recorder import Recorder
+from hil.report import write_report
+from hil.summary import render_table, summarise
+from hil.truth_probe import TruthProbe
+
+
+class ExitCode(IntEnum):
+    """What the process says of the run; a signal's number is added to SIGNAL."""
+
+    ALL_INSERTED = 0
+    NOT_ALL_INSERTED = 1
+    UNUSABLE_INPUT = 2
+    FAULT = 3
+    SIGNAL = 128
+
+
+@dataclass
+class Run:
+    """What has come of a run so far."""
+
+    asked: int
+    outcomes: list[Outcome] = field(default_factory=list)
+    error: TenonError | None = None
+
+    @property
+    def inserted(self) -> int:
+        """Number of parts inserted."""
+        return sum(outcome.phase is SkillPhase.DONE for outcome in self.outcomes)
+
+    @property
+    def exit_code(self) -> int:
+        """What the process should return."""
+        if isinstance(self.error, InterruptedRunError):
+            return ExitCode.SIGNAL + self.error.signal_number
+        if self.error is not None:
+            return ExitCode.FAULT
+        if self.inserted == self.asked:
+            return ExitCode.ALL_INSERTED
+        return ExitCode.NOT_ALL_INSERTED
+
+    @property
+    def ending(self) -> str:
+        """In one sentence, how the run ended."""
+        tally = f"{self.inserted} of {self.asked} inserted"
+        if isinstance(self.error, InterruptedRunError):
+            return f"{tally}. The run was {self.error}; the cell is held and the log is complete."
+        if self.error is not None:
+            return f"{tally}. The run ended by a fault: {self.error}."
+        if self.outcomes and not self.outcomes[-1].is_clear:
+            last = self.outcomes[-1]
+            return (
+                f"{tally}. The run ended with insertion {last.number}, which left the shaft in the "
+                f"part: {last.reason}."
+            )
+        return f"{tally}."
+
+
+def run_cell(
+    config: Annotated[
+        Path, typer.Option(help="The cell (YAML): its devices, limits, part and controllers.")
+    ],
+    log: Annotated[
+        Path, typer.Option(help="MCAP file to write. It must not exist. The report goes beside it.")
+    ],
+    insertions: Annotated[int, typer.Option(min=1, help="How many parts to insert.")] = 1,
+    controller: Annotated[
+        str, typer.Option(help="One of the controllers that the configuration names.")
+    ] = "expert",
+    part: Annotated[
+        Path | None, typer.Option(help="A part (YAML) in place of the one that the cell names.")
+    ] = None,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Seed of all chance on a mock cell: same seed, same log.")
+    ] = 0,
+    real_time: Annotated[
+        bool,
+        typer.Option(
+            "--real-time", help="Let time pass as on a rig; otherwise a mock cell runs ahead of it."
+        ),
+    ] = False,
+) -> None:
+    """Insert parts and log everything: raw forces, proposals, verdicts, and what was really sent.
+
+    Ctrl-C and SIGTERM hold the cell and finish the log.
+
+    Exit code: 0 every part inserted, 1 not every part, 2 unusable input (nothing has moved),
+    3 a device or the log failed, 130 or 143 interrupted.
+    """
+    console = Console()
+    try:
+        settings = load_cell(config, part)
+        clock = SystemClock() if real_time else ManualClock()
+        cell = Cell(settings, controller, clock, np.random.default_rng(seed))
+        recorder = Recorder(log, metadata(settings, controller, insertions, seed, real_time))
+    except TenonError as error:
+        Console(stderr=True).print(f"[red]error:[/] {error}", soft_wrap=True, highlight=False)
+        raise typer.Exit(ExitCode.UNUSABLE_INPUT) from error
+    cell.follow(recorder)
+    cell.follow(TruthProbe(cell.world, recorder))
+
+    run = Run(asked=insertions)
+    with Interrupt() as interrupt:
+        cell.follow(interrupt)
+        try:
+            with ExitStack() as closing:
+                closing.callback(recorder.close)
+                closing.callback(cell.close)
+                _insert_parts(cell, run, console)
+        except TenonError as error:
+            run.error = error
+
+    recorded = read_log(log)
+    console.print(render_table(summarise(recorded)))
+    report = log.with_suffix(".html")
+    write_report(recorded, report)
+    console.print(run.ending, soft_wrap=True, highlight=False)
+    console.print(f"Log: {log}\nReport: {report}", soft_wrap=True, highlight=False)
+    raise typer.Exit(run.exit_code)
+
+
+def _insert_parts(cell: Cell, run: Run, console: Console) -> None:
+    """Insert until all are done, one has left the shaft in its part, or somebody interrupts."""
+    cell.connect()
+    columns = (
+        TextColumn("Inserting"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[last]}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console) as progress:
+        task = progress.add_task("", total=run.asked, last="")
+        for number in range(1, run.asked + 1):
+            try:
+                outcome = cell.insert_part(number)
+            except InterruptedRunError:
+                cell.hold()
+                raise
+            run.outcomes.append(outcome)
+            last = f"{outcome.phase}, {outcome.steps} steps"
+            progress.update(task, advance=1, last=last)
+            if not outcome.is_clear:
+                return
+
+
+if __name__ == "__main__":
+    typer.run(run_cell)

@@ -1,0 +1,3 @@
+from tests.hil.config.cell_files import load, refuse
+
+__all__ = ["load", "refuse"]

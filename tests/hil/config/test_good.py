@@ -1,0 +1,182 @@
+"""The shipped files load, and every value arrives in SI units."""
+
+import hashlib
+import math
+from pathlib import Path
+
+import pytest
+from pydantic import ValidationError
+
+from hil.config import CellConfig, load_cell
+from simulator.contact import ContactLaw
+from simulator.geometry import Hole, Part, Shaft
+from tests.hil.config.cell_files import ROOT, Load, shipped
+from tests.hil.config.key_table import CELL, LIMITS, PART
+
+
+@pytest.fixture(scope="module")
+def config() -> CellConfig:
+    return load_cell(ROOT / CELL)
+
+
+def test_limits(config: CellConfig) -> None:
+    degree = math.radians(1.0)
+    assert config.limits.model_dump() == {
+        "speed_m_s": 0.005,
+        "angular_speed_rad_s": degree,
+        "arm_speed_m_s": 0.05,
+        "step_m": (2e-5, 2e-5, 6e-5),
+        "rotation_step_rad": pytest.approx(0.05 * degree, rel=1e-15),
+        "workspace_min_m": (-2e-4, -2e-4, -1e-3),
+        "workspace_max_m": (2e-4, 2e-4, 3.6e-3),
+        "tilt_rad": pytest.approx(0.6 * degree, rel=1e-15),
+        "clear_depth_m": -1e-4,
+        "arm_tolerance_m": 5e-6,
+        "force_N": (0.07, 0.1, 1.0),
+        "force_rate_N_s": 100.0,
+        "gentle_force_N": 0.044,
+        "impulse_N_s": 0.01,
+        "sample_age_s": 0.005,
+        "device_age_s": 0.03,
+        "proposal_age_s": 0.05,
+        "heartbeat_s": 0.02,
+        "reaction_s": 0.002,
+        "deceleration_m_s2": 1.0,
+        "radial_stiffness_N_m": 16_000.0,
+        "axial_stiffness_N_m": 8_000.0,
+        "lever_m": 0.004,
+        "creep_speed_m_s": 1e-4,
+        "uncertainty_sigmas": 3.0,
+    }
+
+
+def test_devices(config: CellConfig) -> None:
+    devices = (config.force_sensor, config.stage, config.arm, config.gripper)
+    assert [device.backend for device in devices] == ["mock"] * 4
+    assert config.force_sensor.settings.model_dump() == {
+        "rate_Hz": 1000.0,
+        "force_noise_N": 0.001,
+        "torque_noise_Nm": 5e-6,
+        "bias_N": (0.012, -0.007, 0.03),
+        "force_resolution_N": 2e-4,
+        "torque_resolution_Nm": 1e-6,
+        "force_range_N": 12.0,
+        "torque_range_Nm": 0.12,
+        "origin_m": (0.0, 0.0, 0.04),
+    }
+    assert config.stage.settings.model_dump() == {
+        "speed_m_s": 0.005,
+        "angular_speed_rad_s": math.radians(1.0),
+        "acceleration_m_s2": 1.0,
+        "telemetry_rate_Hz": 500.0,
+        "travel_m": (5e-4, 5e-4, 4e-3),
+    }
+    assert config.arm.settings.model_dump() == {
+        "telemetry_rate_Hz": 125.0,
+        "acceleration_m_s2": 0.5,
+    }
+    assert config.gripper.settings.model_dump() == {
+        "telemetry_rate_Hz": 125.0,
+        "vacuum_rise_s": 0.04,
+    }
+
+
+def test_use_of_the_devices(config: CellConfig) -> None:
+    assert config.arm_poses.model_dump() == {"hold_m": (0, 0, 0), "tray_m": (0.1, 0, 0.05)}
+    assert config.filter.model_dump() == {
+        "force_acceleration_std_N_s2": 100.0,
+        "torque_acceleration_std_Nm_s2": 1.0,
+        "gate_probability": 0.99999,
+        "rejections_max": 2,
+        "tare_samples": 100,
+        "bias_change_max_N": 0.005,
+    }
+    assert config.skill.model_dump() == {
+        "start_depth_m": -3e-4,
+        "settle_s": 0.01,
+        "hold_timeout_s": 0.5,
+        "contact_force_N": 0.01,
+    }
+    assert {name: c.model_dump() for name, c in config.controllers.items()} == {
+        name: {
+            "kind": "proportional",
+            "force_jacobian_m_N": 8e-4,
+            "gain_factor": gain,
+        }
+        for name, gain in (("expert", 0.2), ("p", 1.0))
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "gap_m", "error_m", "tilt_deg", "stroke_m", "axial_step_m"),
+    [
+        ("paper_online", 2.5e-3, 2e-6, 0.1, 3.2e-3, 6e-5),
+        ("paper_simulation", 1.5e-3, 1e-5, 0.3, 2.3e-3, 5e-5),
+    ],
+)
+def test_parts(
+    name: str, gap_m: float, error_m: float, tilt_deg: float, stroke_m: float, axial_step_m: float
+) -> None:
+    part = load_cell(ROOT / CELL, ROOT / f"config/parts/{name}.yaml").part
+    assert part.name == name
+    assert part.simulated_shaft() == Shaft(diameter_m=1e-3, length_m=4e-3)
+    upper = Hole(diameter_m=1.01e-3, thickness_m=5e-4, gap_m=0.0)
+    lower = Hole(diameter_m=1.01e-3, thickness_m=5e-4, gap_m=gap_m)
+    assert part.simulated_part() == Part(holes=(upper, lower))
+    assert part.contact_law() == ContactLaw(stiffness_N_m=4000.0, friction=0.2)
+    assert part.alignment.position_error_m == error_m
+    assert part.alignment.tilt_error_rad == pytest.approx(math.radians(tilt_deg), rel=1e-15)
+    assert part.insertion.model_dump() == {
+        "stroke_m": stroke_m,
+        "steps_max": 1000,
+        "finish_force_N": 1.0,
+        "axial_step_m": axial_step_m,
+    }
+    assert all(value is None for value in part.limits.model_dump().values())
+
+
+def test_sources_are_the_files_that_were_read() -> None:
+    override = ROOT / "config/parts/paper_simulation.yaml"
+    sources = load_cell(ROOT / CELL, override).sources
+    assert [source.path for source in sources] == [ROOT / CELL, ROOT / LIMITS, override]
+    for source in sources:
+        content = source.path.read_bytes()
+        assert source.text == content.decode()
+        assert source.sha256 == hashlib.sha256(content).hexdigest()
+
+
+def test_files_are_found_beside_the_cell(tmp_path: Path, load: Load) -> None:
+    files = shipped()
+    files[CELL]["limits"] = str(tmp_path / LIMITS)
+    files[CELL]["part"] = "../config/parts/paper_online.yaml"
+    assert [source.path for source in load(files).sources] == [
+        Path(CELL),
+        tmp_path / LIMITS,
+        Path("config/../config/parts/paper_online.yaml"),
+    ]
+
+
+def test_part_tightens_the_machine(load: Load) -> None:
+    files = shipped()
+    files[PART]["limits"] = {"speed_limit_mm_s": 2, "force_limit_mN": [50, 100, 1000]}
+    limits = load(files).limits
+    assert limits.speed_m_s == 0.002
+    assert limits.force_N == (0.05, 0.1, 1.0)
+    assert limits.gentle_force_N == 0.044
+
+
+def test_one_hole_and_a_chain_of_three(load: Load) -> None:
+    wall = {"diameter_um": 1010, "thickness_um": 500}
+    files = shipped()
+    files[PART]["holes"] = [wall]
+    assert len(load(files).part.simulated_part().holes) == 1
+    gap = {**wall, "gap_um": 1000}
+    files[PART]["holes"] = [{**wall, "gap_um": 0}, gap, gap]
+    assert len(load(files).part.simulated_part().holes) == 3
+
+
+def test_frozen(config: CellConfig) -> None:
+    with pytest.raises(ValidationError, match="frozen"):
+        config.limits.speed_m_s = 1.0  # type: ignore[misc]
+    with pytest.raises(AttributeError):
+        config.limits = config.limits  # type: ignore[misc]

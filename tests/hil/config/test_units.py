@@ -1,0 +1,45 @@
+"""Written units to SI and back."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from controllers.limits import Limits
+from drivers.contract.settings import DEGREES, KILO, MICRO, MILLI, Scale, written
+
+
+@pytest.mark.parametrize(
+    ("scale", "value", "si"),
+    [
+        (MICRO, 35.0, 3.5e-5),
+        (MILLI, 44.0, 0.044),
+        (KILO, 16.0, 16_000.0),
+        (DEGREES, 180.0, math.pi),
+    ],
+)
+def test_to_si_is_exact(scale: Scale, value: float, si: float) -> None:
+    assert scale.to_si(value) == si
+    assert scale.to_si((value, -value)) == (si, -si)
+    assert scale.to_written(si) == value
+    assert scale.to_written((si, 0.0)) == (value, 0.0)
+
+
+@given(st.sampled_from([MICRO, MILLI, KILO, DEGREES]), st.floats(-1e9, 1e9))
+def test_there_and_back(scale: Scale, value: float) -> None:
+    assert scale.to_written(scale.to_si(value)) == pytest.approx(value, rel=1e-15, abs=1e-300)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value", "expected"),
+    [
+        ("speed_m_s", 0.005, "speed_limit_mm_s = 5"),
+        ("tilt_rad", math.radians(0.6), "tilt_limit_deg = 0.6"),
+        ("step_m", (2e-5, 2e-5, 6e-5), "step_box_um = [20, 20, 60]"),
+        ("uncertainty_sigmas", 3.0, "uncertainty_sigmas = 3"),
+        ("lever_m", 1.0, "lever_um = 1000000"),
+    ],
+)
+def test_written(attribute: str, value: float | tuple[float, ...], expected: str) -> None:
+    assert written(Limits, attribute, value) == expected

@@ -1,0 +1,49 @@
+"""The command `python hil/report.py`."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.hil.report.runs import RunWriter
+
+ROOT = Path(__file__).parents[3]
+
+
+def run_report(*arguments: Path | str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "hil/report.py", *map(str, arguments)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.slow
+def test_the_page_goes_beside_the_log_or_where_it_is_told(
+    write_run: Callable[..., RunWriter], tmp_path: Path
+) -> None:
+    run = write_run(name="monday.mcap")
+    run.insertion(1)
+    run.close()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(run.path.read_bytes()[:-1000])
+    for arguments, page in (
+        ((run.path,), tmp_path / "monday.html"),
+        ((cut, "--output", tmp_path / "x.html", "--compare", run.path), tmp_path / "x.html"),
+    ):
+        done = run_report(*arguments)
+        assert done.returncode == 0, done.stderr
+        assert "</html>" in page.read_text("utf-8")
+        assert done.stdout == f"Report: {page}\n"
+
+
+@pytest.mark.slow
+def test_unusable_input_is_told_in_one_line(tmp_path: Path) -> None:
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(b"\x89MCAP0\r\n")
+    for log in (torn, tmp_path / "none.mcap"):
+        done = run_report(log)
+        assert done.returncode == 2
+        assert done.stderr.startswith("error: ")
+        assert done.stderr.count("\n") == 1
+        assert str(log) in done.stderr
+        assert not log.with_suffix(".html").exists()

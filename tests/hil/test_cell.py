@@ -1,0 +1,245 @@
+"""The whole mock cell on simulated time: what its users see of it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from controllers.control_loop import Subscriber
+from controllers.messages import Observation, Proposal, Sent, Severity, SkillPhase, Tick
+from controllers.proportional import ProportionalController
+from drivers.contract.clock import ManualClock
+from drivers.contract.errors import (
+    ConfigurationError,
+    DeviceError,
+    DeviceTimeoutError,
+    SafetyError,
+)
+from drivers.contract.messages import StageCommand, Vector3
+from drivers.force_sensor.mock import MockForceSensor
+from drivers.stage.mock import MockStage
+from hil.cell import Cell
+from hil.config import load_cell
+
+CONFIG = Path(__file__).parents[2] / "config"
+LIMITS_N = np.array([0.070, 0.100, 1.000])
+
+
+@dataclass
+class Watcher(Subscriber):
+    """Keeps raw force less bias, verdicts and phases of every tick."""
+
+    forces: list[Vector3] = field(default_factory=list)
+    severities: list[Severity] = field(default_factory=list)
+    depths: list[float] = field(default_factory=list)
+
+    def on_tick(self, tick: Tick) -> None:
+        sample, stage = tick.snapshot.sample, tick.snapshot.stage
+        if sample is not None and stage is not None:
+            fx, fy, fz = (
+                w - b for w, b in zip(sample.wrench[:3], tick.snapshot.bias[:3], strict=True)
+            )
+            self.forces.append((fx, fy, fz))
+            self.severities.append(tick.verdict.severity)
+            self.depths.append(stage.pose.position[2])
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        return np.array(self.forces)
+
+
+def make_cell(
+    controller: str = "expert", seed: int = 1, part: str = "paper_online"
+) -> tuple[Cell, Watcher, ManualClock]:
+    clock = ManualClock()
+    config = load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / f"{part}.yaml")
+    cell = Cell(config, controller, clock, np.random.default_rng(seed))
+    watcher = Watcher()
+    cell.follow(watcher)
+    cell.connect()
+    return cell, watcher, clock
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", ["paper_online", "paper_simulation"])
+def test_the_expert_inserts_softly(part: str) -> None:
+    cell, watcher, _ = make_cell(part=part)
+    outcomes = [cell.insert_part(number) for number in range(1, 6)]
+    assert [o.phase for o in outcomes] == [SkillPhase.DONE] * 5
+    assert all(o.is_clear and o.reason == "" and o.steps <= 60 for o in outcomes)
+    inside = watcher.force[np.array(watcher.depths) > 0.0]
+    assert (np.abs(inside).max(axis=0) <= [0.100, 0.100, 0.090]).all()
+    assert (np.hypot(inside[:, 0], inside[:, 1]) <= 0.044).mean() > 0.9
+    assert max(watcher.severities) < Severity.STOP
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_the_conventional_controller_oscillates_and_is_stopped_at_the_limit(seed: int) -> None:
+    """No axis passes its limit by more than one sample's growth, and the verdict says which."""
+    cell, watcher, _ = make_cell("p", seed, "paper_simulation")
+    outcome = cell.insert_part(1)
+    while outcome.is_clear:
+        outcome = cell.insert_part(outcome.number + 1)
+    assert outcome.phase is SkillPhase.FAILED
+    assert outcome.reason.startswith("force limit: f_")
+    force = watcher.force
+    first_stop = watcher.severities.index(Severity.STOP)
+    began = max(i for i in range(first_stop) if watcher.depths[i] < -200e-6)
+    inserting = force[began : first_stop + 50]
+    growth = np.abs(np.diff(inserting, axis=0)).max(axis=0)
+    assert (np.abs(inserting).max(axis=0) <= LIMITS_N + growth).all()
+    assert np.abs(force[first_stop:]).max() < 0.110
+    # it swings from one side to the other before that
+    radial = inserting[:, :2]
+    assert (radial.max(axis=0) > 0.020).any()
+    assert (radial.min(axis=0) < -0.020).any()
+
+
+def test_the_same_seed_gives_the_same_run_and_another_seed_another() -> None:
+    runs = []
+    for seed in (5, 5, 6):
+        cell, watcher, clock = make_cell(seed=seed)
+        cell.insert_part(1)
+        runs.append((watcher.forces, clock.now_ns()))
+    assert runs[0] == runs[1]
+    assert runs[0] != runs[2]
+
+
+def test_an_unknown_controller_is_refused() -> None:
+    with pytest.raises(
+        ConfigurationError, match="controller 'ddpg' is not valid: one of expert, p"
+    ):
+        make_cell("ddpg")
+
+
+def at(ms: int, watcher: Watcher, act: Callable[[], None]) -> Subscriber:
+    """Do something once, so many samples after the shaft has gone in."""
+
+    class Once(Subscriber):
+        def on_tick(self, tick: Tick) -> None:
+            inside = sum(depth > 0.0 for depth in watcher.depths[-ms:])
+            if inside == ms:
+                watcher.depths.append(-1.0)
+                act()
+
+    return Once()
+
+
+def test_a_silent_sensor_holds_the_cell_and_the_insertion_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell, watcher, clock = make_cell()
+    ticks: list[Tick] = []
+
+    class Keeper(Subscriber):
+        def on_tick(self, tick: Tick) -> None:
+            ticks.append(tick)
+
+    cell.follow(Keeper())
+
+    def silence() -> None:
+        def read(sensor: MockForceSensor, timeout_s: float) -> None:
+            clock.sleep_until_ns(clock.now_ns() + round(timeout_s * 1e9))
+            raise DeviceTimeoutError("unplugged")
+
+        monkeypatch.setattr(MockForceSensor, "read", read)
+
+    cell.follow(at(100, watcher, silence))
+    outcome = cell.insert_part(1)
+    assert outcome.phase is SkillPhase.FAILED
+    assert outcome.reason.startswith("held too long: ")
+    assert not outcome.is_clear
+    stage = ticks[-1].snapshot.stage
+    assert stage is not None
+    assert not stage.moving
+    held = next(i for i, t in enumerate(ticks) if t.verdict.severity is Severity.HOLD)
+    silent_since = ticks[held - 1].end_ns
+    assert ticks[held].start_ns - silent_since <= 3_000_000
+    assert "filter health" in str(ticks[held].verdict.reasons)
+
+
+def test_a_lost_part_stops_the_cell() -> None:
+    cell, watcher, _ = make_cell()
+    gripper = cell._devices[3]
+    cell.follow(at(100, watcher, lambda: setattr(gripper, "_held_from_ns", None)))
+    outcome = cell.insert_part(1)
+    assert outcome.phase is SkillPhase.FAILED
+    # the valve's telemetry follows within 8 ms
+    assert outcome.reason == "vacuum lost: stage in the part, part not held"
+    assert not outcome.is_clear
+
+
+def test_after_a_stop_nothing_more_is_done_until_a_reset() -> None:
+    cell, watcher, _ = make_cell()
+    gripper = cell._devices[3]
+    cell.follow(at(100, watcher, lambda: setattr(gripper, "_held_from_ns", None)))
+    cell.insert_part(1)
+    with pytest.raises(SafetyError, match="vacuum lost"):
+        cell.insert_part(2)
+
+
+def test_a_device_that_fails_ends_the_run_and_the_cell_is_held(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell, watcher, _ = make_cell()
+    halts: list[int] = []
+    halt = MockStage.halt
+
+    def noted(stage: MockStage) -> None:
+        halts.append(1)
+        halt(stage)
+
+    def broken(stage: MockStage, *_: object) -> StageCommand:
+        raise DeviceError("controller error 1024")
+
+    monkeypatch.setattr(MockStage, "halt", noted)
+    cell.follow(at(100, watcher, lambda: monkeypatch.setattr(MockStage, "move_to", broken)))
+    with pytest.raises(DeviceError, match="1024"):
+        cell.insert_part(1)
+    cell.close()
+    assert halts
+
+
+def test_a_controller_that_goes_mad_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    cell, _, _ = make_cell()
+    monkeypatch.setattr(
+        ProportionalController, "step", lambda self, observation: (float("nan"), 0.0, 60e-6)
+    )
+    outcome = cell.insert_part(1)
+    assert outcome.phase is SkillPhase.FAILED
+    assert outcome.reason.startswith("non-finite value: proposal (nan, 0.0, ")
+
+
+def test_a_part_off_its_place_is_felt_and_led_back_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Far beside the hole the shaft presses: it ends softly, or is stopped at the limit."""
+    cell, watcher, _ = make_cell()
+    monkeypatch.setattr(
+        "drivers.mock_world.initial_poses",
+        lambda *_: np.array([[14e-6, 0.0, 0.0, 0.0, 0.0]]),
+    )
+    outcome = cell.insert_part(1)
+    assert outcome.phase in (SkillPhase.FAILED, SkillPhase.DONE)
+    growth = np.abs(np.diff(watcher.force, axis=0)).max(axis=0)
+    inside = watcher.force[np.array(watcher.depths[: len(watcher.forces)]) > -250e-6]
+    assert (np.abs(inside).max(axis=0) <= LIMITS_N + growth).all()
+
+
+def test_every_proposal_is_answered_and_tied_by_its_number() -> None:
+    cell, _, _ = make_cell()
+    proposed: list[int] = []
+    sent: list[int] = []
+
+    class Numbers(Subscriber):
+        def on_proposal(self, observation: Observation, proposal: Proposal) -> None:
+            proposed.append(proposal.number)
+
+        def on_sent(self, answer: Sent) -> None:
+            sent.append(answer.number)
+
+    cell.follow(Numbers())
+    cell.insert_part(1)
+    assert proposed == sent == list(range(1, len(sent) + 1))
