@@ -1,0 +1,22 @@
+"""What a benchmark says of the machine it ran on."""
+
+import os
+import platform
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+
+def describe() -> str:
+    """Return processor, cores, Python, numpy and the command in a few lines."""
+    cpu = platform.processor() or "unknown processor"
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        names = [line for line in info.read_text().splitlines() if line.startswith("model name")]
+        cpu = names[0].split(":", 1)[1].strip() if names else cpu
+    cores = len(os.sched_getaffinity(0))
+    return (
+        f"machine: {cpu}, {cores} cores, {platform.system()} {platform.release()}\n"
+        f"python {platform.python_version()}, numpy {version('numpy')}\n"
+        f"command: python {' '.join(sys.argv)}"
+    )
