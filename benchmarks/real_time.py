@@ -18,6 +18,7 @@ from drivers.contract.errors import TenonError
 from drivers.contract.messages import ForceSample
 from hil.cell import Cell
 from hil.config import load_cell
+from hil.log_process import LogProcess
 from hil.metadata import metadata
 from hil.recorder import Recorder
 
@@ -67,7 +68,9 @@ def main(seconds: float) -> None:
     cell = Cell(config, "expert", SystemClock(), np.random.default_rng(1))
     stopwatch = Stopwatch(round(seconds * rate_Hz))
     with tempfile.TemporaryDirectory() as folder:
-        recorder = Recorder(Path(folder) / "run.mcap", metadata(config, "expert", 1, 1, True))
+        recorder = Recorder(
+            LogProcess(Path(folder) / "run.mcap", metadata(config, "expert", 1, 1, True))
+        )
         cell.follow(recorder)
         cell.follow(stopwatch)
         cell.connect()

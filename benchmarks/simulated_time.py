@@ -15,6 +15,7 @@ from controllers.messages import SkillPhase
 from drivers.contract.clock import ManualClock
 from hil.cell import Cell
 from hil.config import load_cell
+from hil.log_process import LogProcess
 from hil.metadata import metadata
 from hil.recorder import Recorder
 
@@ -27,7 +28,7 @@ def main(insertions: int) -> None:
     cell = Cell(config, "expert", clock, np.random.default_rng(1))
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "run.mcap"
-        recorder = Recorder(log, metadata(config, "expert", insertions, 1, False))
+        recorder = Recorder(LogProcess(log, metadata(config, "expert", insertions, 1, False)))
         cell.follow(recorder)
         begin = time.perf_counter()
         cell.connect()

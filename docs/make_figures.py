@@ -9,6 +9,7 @@ from drivers.contract.clock import ManualClock
 from hil import figures
 from hil.cell import Cell
 from hil.config import load_cell
+from hil.log_file import LogFile
 from hil.log_reader import Log, read_log
 from hil.metadata import metadata
 from hil.recorder import Recorder
@@ -27,7 +28,7 @@ def run(controller: str, folder: Path) -> Log:
     )
     path = folder / f"{controller}.mcap"
     cell = Cell(config, controller, ManualClock(), np.random.default_rng(SEED))
-    recorder = Recorder(path, metadata(config, controller, 1, SEED, False))
+    recorder = Recorder(LogFile(path, metadata(config, controller, 1, SEED, False)))
     cell.follow(recorder)
     cell.follow(TruthProbe(cell.world, recorder))
     cell.connect()

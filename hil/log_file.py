@@ -14,6 +14,11 @@ from hil import ros_types as ros
 FORMAT_RECORD = "tenon_log"
 """Name of the metadata record that says which format a log has."""
 FORMAT_VERSION = "1"
+ENDING_RECORD = "ending"
+"""Name of the metadata record that says why a run ended before its time."""
+
+FLUSH_PERIOD_NS = 50_000_000
+"""At least so often, by the host's time, all traffic goes to the operating system."""
 
 
 class Topic(StrEnum):
@@ -87,9 +92,15 @@ class LogFile:
     """
 
     def __init__(
-        self, path: Path, metadata: Mapping[str, Mapping[str, str]], flush_period_ns: int
+        self,
+        path: Path,
+        metadata: Mapping[str, Mapping[str, str]],
+        flush_period_ns: int = FLUSH_PERIOD_NS,
     ) -> None:
-        """Create the file, which must not exist, with `metadata` as its first records."""
+        """Create the file, which must not exist, with `metadata` as its first records.
+
+        `metadata` holds named records of text, such as configuration and limits.
+        """
         self._path = path
         self._flush_pace = Pace(flush_period_ns)
         self._log_time_ns = 0
@@ -109,7 +120,9 @@ class LogFile:
             for name, entries in metadata.items():
                 self._writer.add_metadata(name, dict(entries))
             schemas: dict[str, int] = {}
-            self._channels = {topic: self._register(topic, schemas) for topic in Topic}
+            self._channels: dict[str, int] = {
+                topic: self._register(topic, schemas) for topic in Topic
+            }
             self._writer.flush()  # type: ignore[no-untyped-call]
         except OSError as error:
             raise self._failed(error) from error
@@ -120,9 +133,9 @@ class LogFile:
         return not self._unusable
 
     def write(
-        self, topic: Topic, data: bytes, stamp_ns: int, heard_ns: int, sequence: int = 0
+        self, topic: str, data: bytes, stamp_ns: int, heard_ns: int, sequence: int = 0
     ) -> None:
-        """Add one message with its own stamp and the host's time; flush if it is time to."""
+        """Add one message to a Topic with its own stamp and the host's time; flush if due."""
         if self._unusable:
             raise LogError(self._unusable)
         if heard_ns > self._log_time_ns:
@@ -153,9 +166,13 @@ class LogFile:
         except OSError as error:
             raise self._failed(error) from error
 
-    def close(self) -> None:
-        """Write index and footer, and close."""
+    def close(self, ending: str = "") -> None:
+        """Write why the run ended before its time, if it did, then index and footer, and close."""
+        if self._unusable:
+            raise LogError(self._unusable)
         try:
+            if ending:
+                self._writer.add_metadata(ENDING_RECORD, {"text": ending})
             self._writer.finish()  # type: ignore[no-untyped-call]
             self._writer.flush()  # type: ignore[no-untyped-call]
             self._stream.close()

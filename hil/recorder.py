@@ -4,8 +4,6 @@ Every message keeps its own stamp (header and MCAP publish time); MCAP's log tim
 heard of it. Nothing here reads a clock: the same calls make the same bytes.
 """
 
-from collections.abc import Mapping
-from pathlib import Path
 from statistics import fmean, median
 
 from controllers.control_loop import Subscriber
@@ -27,6 +25,7 @@ from drivers.contract.messages import ForceSample, Wrench
 from hil import ros_messages
 from hil import ros_types as ros
 from hil.log_file import LogFile, Pace, Topic
+from hil.log_process import LogProcess
 from hil.ros_messages import CELL, NS_PER_S, PART, ContactTruth, LoopTiming, RawForceEncoder
 
 _ESTIMATE_EVERY_TICKS = 10
@@ -71,23 +70,14 @@ class _TimingWindow:
 class Recorder(Subscriber):
     """Follows the control loop and writes down what happens; not for use by several threads."""
 
-    def __init__(
-        self,
-        path: Path,
-        metadata: Mapping[str, Mapping[str, str]],
-        flush_period_ns: int = 50_000_000,
-        deadline_ns: int = 1_000_000,
-    ) -> None:
-        """Create the log at `path`, which must not exist.
+    def __init__(self, log: LogFile | LogProcess, deadline_ns: int = 1_000_000) -> None:
+        """Record to `log`, which the recorder closes.
 
-        `metadata` holds named records of text, such as configuration and limits. At least every
-        `flush_period_ns` of the host's time all traffic goes to the operating system. A tick that
-        takes longer than `deadline_ns` from sample to verdict counts as a missed deadline.
-
-        Raises LogError where the file exists or cannot be written; so does every other method.
-        After such an error the recorder takes nothing more, and the file keeps what it has.
+        A tick that takes longer than `deadline_ns` from sample to verdict counts as a missed
+        deadline. Every method raises LogError where the log cannot be written; after that the
+        recorder takes nothing more, and the file keeps what it has.
         """
-        self._file = LogFile(path, metadata, flush_period_ns)
+        self._log = log
         self._raw_force = RawForceEncoder()
         self._timing = _TimingWindow(deadline_ns)
         self._stage_pace = Pace(_STATE_PERIOD_NS)
@@ -107,7 +97,7 @@ class Recorder(Subscriber):
 
     def on_sample(self, sample: ForceSample) -> None:
         """Record every raw sample."""
-        self._file.write(
+        self._log.write(
             Topic.RAW_FORCE,
             self._raw_force.encode(sample),
             sample.stamp_ns,
@@ -126,7 +116,7 @@ class Recorder(Subscriber):
         if timing is not None:
             self._write(Topic.LOOP_TIMING, ros_messages.loop_timing(timing), timing.stamp_ns)
         self._ticks += 1
-        self._file.keep_pace(tick.end_ns)
+        self._log.keep_pace(tick.end_ns)
 
     def on_proposal(self, observation: Observation, proposal: Proposal) -> None:
         """Record what a controller knew and what it proposes."""
@@ -140,12 +130,12 @@ class Recorder(Subscriber):
     def on_phase(self, change: PhaseChange) -> None:
         """Record a phase, and flush: an insertion's end is on file before the cell goes on."""
         self._write(Topic.PHASE, ros_messages.phase_change(change), change.stamp_ns)
-        self._file.flush()
+        self._log.flush()
 
     def on_reset(self, record: ResetRecord) -> None:
         """Record an operator's reset, and flush."""
         self._write(Topic.RESET, ros_messages.reset(record), record.stamp_ns)
-        self._file.flush()
+        self._log.flush()
 
     def on_truth(self, truth: ContactTruth) -> None:
         """Record what a mock cell knows, at 100 Hz and whenever the kind of contact changes."""
@@ -154,19 +144,22 @@ class Recorder(Subscriber):
             self._contact = contact
             self._write(Topic.CONTACT_STATE, ros_messages.contact_state(truth), truth.stamp_ns)
 
-    def close(self) -> None:
-        """Finish the file: index, summary, footer. Does nothing once closed or failed."""
-        if not self._file.usable:
+    def close(self, ending: str = "") -> None:
+        """Finish the log; `ending` says why the run ended before its time, if it did.
+
+        Does nothing once the log is closed or has failed.
+        """
+        if not self._log.usable:
             return
         timing = self._timing.end()
         if timing is not None:
             self._write(Topic.LOOP_TIMING, ros_messages.loop_timing(timing), timing.stamp_ns)
-        self._file.close()
+        self._log.close(ending)
 
     def _write(
         self, topic: Topic, message: ros.RosMessage, stamp_ns: int, heard_ns: int | None = None
     ) -> None:
-        self._file.write(
+        self._log.write(
             topic, ros.encode(message), stamp_ns, stamp_ns if heard_ns is None else heard_ns
         )
 

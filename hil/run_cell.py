@@ -1,6 +1,6 @@
 """Inserts parts with the cell that a configuration describes, and logs everything to MCAP."""
 
-from contextlib import ExitStack
+from contextlib import closing
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
@@ -13,10 +13,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from controllers.messages import SkillPhase
 from drivers.contract.clock import ManualClock, SystemClock
-from drivers.contract.errors import TenonError
+from drivers.contract.errors import LogError, TenonError
 from hil.cell import Cell, Outcome
 from hil.config import load_cell
 from hil.interrupt import Interrupt, InterruptedRunError
+from hil.log_process import LogProcess
 from hil.log_reader import read_log
 from hil.metadata import metadata
 from hil.recorder import Recorder
@@ -60,20 +61,19 @@ class Run:
         return ExitCode.NOT_ALL_INSERTED
 
     @property
-    def ending(self) -> str:
-        """In one sentence, how the run ended."""
-        tally = f"{self.inserted} of {self.asked} inserted"
+    def early_end(self) -> str:
+        """In one sentence, why the run ended before its time; empty if it did not."""
         if isinstance(self.error, InterruptedRunError):
-            return f"{tally}. The run was {self.error}; the cell is held and the log is complete."
+            return f"The run was {self.error}; the cell is held and the log is complete."
         if self.error is not None:
-            return f"{tally}. The run ended by a fault: {self.error}."
+            return f"The run ended by a fault: {self.error}."
         if self.outcomes and not self.outcomes[-1].is_clear:
             last = self.outcomes[-1]
             return (
-                f"{tally}. The run ended with insertion {last.number}, which left the shaft in the "
-                f"part: {last.reason}."
+                f"The run ended with insertion {last.number}, which left the shaft in the part: "
+                f"{last.reason}."
             )
-        return f"{tally}."
+        return ""
 
 
 def run_cell(
@@ -112,7 +112,9 @@ def run_cell(
         settings = load_cell(config, part)
         clock = SystemClock() if real_time else ManualClock()
         cell = Cell(settings, controller, clock, np.random.default_rng(seed))
-        recorder = Recorder(log, metadata(settings, controller, insertions, seed, real_time))
+        recorder = Recorder(
+            LogProcess(log, metadata(settings, controller, insertions, seed, real_time))
+        )
     except TenonError as error:
         Console(stderr=True).print(f"[red]error:[/] {error}", soft_wrap=True, highlight=False)
         raise typer.Exit(ExitCode.UNUSABLE_INPUT) from error
@@ -123,18 +125,23 @@ def run_cell(
     with Interrupt() as interrupt:
         cell.follow(interrupt)
         try:
-            with ExitStack() as closing:
-                closing.callback(recorder.close)
-                closing.callback(cell.close)
-                _insert_parts(cell, run, console)
-        except TenonError as error:
-            run.error = error
+            with closing(recorder):
+                try:
+                    with closing(cell):
+                        _insert_parts(cell, run, console)
+                except TenonError as error:
+                    run.error = error
+                recorder.close(run.early_end)
+        except LogError as error:
+            run.error = run.error or error
 
     recorded = read_log(log)
-    console.print(render_table(summarise(recorded)))
+    summary = summarise(recorded)
+    console.print(render_table(summary))
     report = log.with_suffix(".html")
     write_report(recorded, report)
-    console.print(run.ending, soft_wrap=True, highlight=False)
+    if run.early_end not in ("", summary.facts.early_end):
+        console.print(run.early_end, soft_wrap=True, highlight=False)
     console.print(f"Log: {log}\nReport: {report}", soft_wrap=True, highlight=False)
     raise typer.Exit(run.exit_code)
 

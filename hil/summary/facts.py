@@ -8,6 +8,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, NonNegativeInt
 
 from drivers.contract.messages import Vector3
+from hil.log_file import ENDING_RECORD
 
 _LENIENT = ConfigDict(frozen=True, extra="ignore")
 """A log may come from a version with other keys than this one."""
@@ -58,6 +59,8 @@ class RunFacts:
     """Insertions asked for."""
     simulated_time: bool
     limits: ForceLimits | None
+    early_end: str
+    """Why the run ended before its time, in its own words; empty if it did not, or nobody knows."""
 
 
 def run_facts(metadata: Mapping[str, Mapping[str, str]]) -> RunFacts:
@@ -72,6 +75,7 @@ def run_facts(metadata: Mapping[str, Mapping[str, str]]) -> RunFacts:
         asked=run.insertions if run else None,
         simulated_time=run is not None and run.time == "simulated",
         limits=_limits(metadata.get("limits", {}).get("in_force", "")),
+        early_end=metadata.get(ENDING_RECORD, {}).get("text", ""),
     )
 
 

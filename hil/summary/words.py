@@ -76,7 +76,9 @@ def _early_end(summary: RunSummary) -> Iterator[str]:
         yield _stopped(summary, stop)
     if not summary.complete:
         yield f"The log is not whole: {summary.ending}. What came after is not known."
-    is_explained = bool(summary.stops) or not summary.complete
+    if summary.facts.early_end:
+        yield summary.facts.early_end
+    is_explained = bool(summary.stops or summary.facts.early_end) or not summary.complete
     last = summary.insertions[-1] if summary.insertions else None
     if last is not None and not is_explained and last.outcome is Outcome.NOT_FINISHED:
         yield f"The run ended in the middle of insertion {last.number}."

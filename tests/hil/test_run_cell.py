@@ -41,7 +41,7 @@ def test_thirty_parts_are_inserted_within_the_papers_figures(tmp_path: Path) -> 
     log = tmp_path / "run.mcap"
     code, out, err = run("--config", MOCK, "--insertions", "30", "--seed", "1", "--log", str(log))
     assert (code, err) == (0, "")
-    assert "30 of 30 inserted." in out
+    assert "30 of 30 inserted (100.0 %" in out
     assert log.with_suffix(".html").read_text().startswith("<!DOCTYPE html>")
     recorded = read_log(log)
     assert recorded.complete
@@ -82,8 +82,11 @@ def test_a_signal_holds_the_cell_and_finishes_the_file(
     out, err = process.communicate(timeout=120)
     assert (process.returncode, err) == (code, "")
     said = " ".join(out.split())
-    assert f"The run was interrupted by {number.name}; the cell is held and the log is" in said
+    ending = f"The run was interrupted by {number.name}; the cell is held and the log is complete."
+    assert said.count(ending) == 1
+    assert ending in log.with_suffix(".html").read_text()
     recorded = read_log(log)
+    assert recorded.metadata["ending"] == {"text": ending}
     assert recorded.complete
     velocity = recorded.stage_twist.velocity[-1]
     assert (velocity == 0.0).all()

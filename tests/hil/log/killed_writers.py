@@ -1,9 +1,10 @@
-"""Records the same run again and again, each time until the recording process is killed.
+"""Records the same run again and again, each time until recorder and log writer are killed.
 
     python -m tests.hil.log.killed_writers FOLDER SEED MILLISECONDS SECONDS...
 
-For the N-th of SECONDS a process records at the pace of the host's clock into `N.mcap`; so long
-after the first call it is killed. Before each call of the recorder it adds the time to `N.told`.
+For the N-th of SECONDS a process records at the pace of the host's clock into `N.mcap`, through a
+log writer in a process of its own; so long after the first call both are killed. Before each call
+of the recorder it adds the time to `N.told`.
 """
 
 import os
@@ -13,6 +14,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from hil.log_process import LogProcess
 from hil.recorder import Recorder
 from tests.hil.log import scenario
 
@@ -21,7 +23,7 @@ AT_ONCE = 8
 
 def record(stem: Path, calls: Sequence[scenario.Call]) -> None:
     """Tell a recorder the calls, each when it is due."""
-    recorder = Recorder(stem.with_suffix(".mcap"), scenario.METADATA)
+    recorder = Recorder(LogProcess(stem.with_suffix(".mcap"), scenario.METADATA))
     with stem.with_suffix(".told").open("wb", buffering=0) as told:
         start_ns = time.monotonic_ns()
         for call in calls:
@@ -32,9 +34,10 @@ def record(stem: Path, calls: Sequence[scenario.Call]) -> None:
 
 
 def start(stem: Path, calls: Sequence[scenario.Call]) -> int:
-    """Return the process that records."""
+    """Return the process that records, which leads a group of its own."""
     process = os.fork()
     if process == 0:
+        os.setpgid(0, 0)
         try:
             record(stem, calls)
         finally:
@@ -43,9 +46,9 @@ def start(stem: Path, calls: Sequence[scenario.Call]) -> int:
 
 
 def kill(process: int, stem: Path, until_s: float) -> None:
-    """Kill the process at a time of the monotonic clock."""
+    """Kill the process and its log writer at a time of the monotonic clock."""
     time.sleep(max(until_s - time.monotonic(), 0.0))
-    os.kill(process, signal.SIGKILL)
+    os.killpg(process, signal.SIGKILL)
     _, status = os.waitpid(process, 0)
     if not os.WIFSIGNALED(status):
         sys.exit(f"the run in {stem} was over before the kill")

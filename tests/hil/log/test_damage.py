@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from drivers.contract.errors import LogError
+from hil.log_file import LogFile
 from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 from tests.hil.log import scenario
@@ -36,7 +37,7 @@ class Whole:
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
     path = tmp_path_factory.mktemp("damage") / "run.mcap"
-    recorder = Recorder(path, scenario.METADATA, flush_period_ns=10_000_000)
+    recorder = Recorder(LogFile(path, scenario.METADATA, flush_period_ns=10_000_000))
     for call in scenario.calls(seed=2, milliseconds=60):
         call.make(recorder)
     recorder.close()

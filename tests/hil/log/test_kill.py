@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from hil.log_file import LogFile
 from hil.log_reader import read_log
 from hil.recorder import Recorder
 from tests.hil.log import node_reader, scenario
@@ -34,7 +35,7 @@ class Killed:
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Rows:
     """What the log holds where nobody kills the writer."""
     path = tmp_path_factory.mktemp("reference") / "run.mcap"
-    recorder = Recorder(path, scenario.METADATA)
+    recorder = Recorder(LogFile(path, scenario.METADATA))
     for call in scenario.calls(SEED, RUN_MS):
         call.make(recorder)
     recorder.close()
@@ -86,7 +87,7 @@ def test_viewers_read_of_a_killed_run_what_we_read(killed: list[Killed], node_fo
 def test_no_call_leaves_more_than_100_ms_off_the_disk(tmp_path: Path, reference: Rows) -> None:
     """A kill between two calls, or within a write, leaves what the file held after some call."""
     path = tmp_path / "run.mcap"
-    recorder = Recorder(path, scenario.METADATA)
+    recorder = Recorder(LogFile(path, scenario.METADATA))
     latest_with_size = {}
     size = path.stat().st_size
     for call in scenario.calls(SEED, RUN_MS):

@@ -21,7 +21,7 @@ from controllers.messages import (
     Verdict,
 )
 from drivers.contract.messages import ArmState, ForceSample, GripperState, Pose, StageState
-from hil.log_file import Topic
+from hil.log_file import LogFile, Topic
 from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 from hil.ros_messages import ContactTruth
@@ -44,7 +44,7 @@ def _tick(ms: int, *reasons: Reason, took_ns: int = 20_000, **seen: object) -> T
 
 
 def _record(path: Path, ticks: list[Tick]) -> Log:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     for tick in ticks:
         recorder.on_tick(tick)
     recorder.close()
@@ -135,7 +135,7 @@ def test_loop_timing_of_each_100_ms_and_of_the_rest(path: Path) -> None:
 
 
 def test_contact_truth_at_100_hz_and_on_change(path: Path) -> None:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     for ms in range(40):
         contacts = 2 if ms in (13, 14) else 1
         recorder.on_truth(ContactTruth(ms * MS, "b", "upper hole", contacts, 0.0, ZERO))
@@ -145,7 +145,7 @@ def test_contact_truth_at_100_hz_and_on_change(path: Path) -> None:
 
 
 def test_log_time_is_the_host_time_and_publish_time_the_stamp(path: Path) -> None:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     times_ns = [(7, 10), (9, 12), (5, 11), (-3, 13)]
     for number, (stamp_ns, receipt_ns) in enumerate(times_ns):
         recorder.on_sample(ForceSample(stamp_ns, receipt_ns, number, ZERO))
@@ -184,7 +184,7 @@ def test_what_a_tick_shows_is_heard_at_the_tick_and_older(path: Path) -> None:
 def test_the_same_calls_make_the_same_bytes(tmp_path: Path) -> None:
     contents = []
     for name in ("one.mcap", "two.mcap"):
-        recorder = Recorder(tmp_path / name, scenario.METADATA)
+        recorder = Recorder(LogFile(tmp_path / name, scenario.METADATA))
         for call in scenario.calls(seed=3, milliseconds=500):
             call.make(recorder)
         recorder.close()
@@ -194,7 +194,7 @@ def test_the_same_calls_make_the_same_bytes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("step_ms", [1, 20])
 def test_ticks_alone_bring_the_log_to_the_disk(path: Path, step_ms: int) -> None:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     recorder.on_sample(ForceSample(0, 0, 0, ZERO))
     recorder.on_sample(ForceSample(MS, MS, 1, ZERO))
     assert read_log(path).raw_force.sequences.tolist() == [0]
@@ -205,7 +205,7 @@ def test_ticks_alone_bring_the_log_to_the_disk(path: Path, step_ms: int) -> None
 
 
 def test_a_clock_that_jumps_back_does_not_keep_the_log_off_the_disk(path: Path) -> None:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     for number, ms in enumerate([10_000, 5, 6, 40, 56]):
         recorder.on_sample(ForceSample(ms * MS, ms * MS, number, ZERO))
     assert read_log(path).raw_force.sequences.tolist() == [0, 1, 2, 3, 4]
@@ -213,7 +213,7 @@ def test_a_clock_that_jumps_back_does_not_keep_the_log_off_the_disk(path: Path) 
 
 
 def test_phases_and_resets_are_on_the_disk_at_once(path: Path) -> None:
-    recorder = Recorder(path, {})
+    recorder = Recorder(LogFile(path, {}))
     recorder.on_sample(ForceSample(0, 0, 0, ZERO))
     recorder.on_phase(PhaseChange(MS, 1, SkillPhase.DONE, "", 53))
     assert len(read_log(path).phases) == 1

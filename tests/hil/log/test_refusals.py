@@ -13,11 +13,15 @@ from controllers.messages import PhaseChange, SkillPhase
 from drivers.contract.errors import LogError
 from drivers.contract.messages import ForceSample
 from hil import ros_messages, ros_types
+from hil.log_file import LogFile
+from hil.log_process import LogProcess
 from hil.log_reader import read_log
 from hil.recorder import Recorder
 from tests.hil.log import scenario
 
 SAMPLE = ForceSample(1, 2, 3, (0.0,) * 6)
+LogKind = type[LogFile] | type[LogProcess]
+each_kind = pytest.mark.parametrize("kind", [LogFile, LogProcess])
 
 
 @pytest.fixture
@@ -33,20 +37,23 @@ def _error_text(path: Path) -> str:
     return text.replace(str(path), "")
 
 
-def test_a_log_is_never_overwritten(path: Path) -> None:
+@each_kind
+def test_a_log_is_never_overwritten(kind: LogKind, path: Path) -> None:
     path.write_text("something of worth")
     with pytest.raises(LogError, match=r"run\.mcap exists .* move it away or choose another name"):
-        Recorder(path, {})
+        Recorder(kind(path, {}))
     assert path.read_text() == "something of worth"
 
 
-def test_a_folder_must_exist(tmp_path: Path) -> None:
+@each_kind
+def test_a_folder_must_exist(kind: LogKind, tmp_path: Path) -> None:
     with pytest.raises(LogError, match=r"none/run\.mcap: No such file or directory"):
-        Recorder(tmp_path / "none" / "run.mcap", {})
+        Recorder(kind(tmp_path / "none" / "run.mcap", {}))
 
 
-def test_a_closed_log_takes_nothing_more(path: Path) -> None:
-    recorder = Recorder(path, {})
+@each_kind
+def test_a_closed_log_takes_nothing_more(kind: LogKind, path: Path) -> None:
+    recorder = Recorder(kind(path, {}))
     recorder.close()
     recorder.close()
     content = path.read_bytes()
@@ -59,10 +66,13 @@ FULL_DISK = """
     import resource, sys
     from pathlib import Path
     from drivers.contract.errors import LogError
+    from hil.log_file import LogFile
+    from hil.log_process import LogProcess
     from hil.recorder import Recorder
     from tests.hil.log import scenario
 
-    path, limit, milliseconds = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    kind = {"LogFile": LogFile, "LogProcess": LogProcess}[sys.argv[1]]
+    path, limit, milliseconds = Path(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
     def attempt(call):
@@ -74,7 +84,7 @@ FULL_DISK = """
         return True
 
     recorders = []
-    if attempt(lambda: recorders.append(Recorder(path, scenario.METADATA))):
+    if attempt(lambda: recorders.append(Recorder(kind(path, scenario.METADATA)))):
         recorder = recorders[0]
         for call in scenario.calls(seed=4, milliseconds=milliseconds):
             if not attempt(lambda: call.make(recorder)):
@@ -84,22 +94,23 @@ FULL_DISK = """
 """
 
 
-def _fill_disk(path: Path, limit: int, milliseconds: int) -> list[str]:
+def _fill_disk(kind: LogKind, path: Path, limit: int, milliseconds: int) -> list[str]:
     """Record a run where only `limit` bytes can be written; return the errors."""
     command = [sys.executable, "-W", "error", "-X", "dev", "-c", textwrap.dedent(FULL_DISK)]
-    arguments = [str(path), str(limit), str(milliseconds)]
+    arguments = [kind.__name__, str(path), str(limit), str(milliseconds)]
     done = subprocess.run([*command, *arguments], check=True, capture_output=True, text=True)
     assert done.stderr == ""
     assert path.stat().st_size == limit
     return done.stdout.splitlines()
 
 
-def test_a_full_disk_is_an_error_and_keeps_what_was_recorded(path: Path) -> None:
-    errors = _fill_disk(path, limit=30_000, milliseconds=500)
+@each_kind
+def test_a_full_disk_is_an_error_and_keeps_what_was_recorded(kind: LogKind, path: Path) -> None:
+    errors = _fill_disk(kind, path, limit=30_000, milliseconds=500)
     text = f"cannot write the log {path}: File too large; what it held until then can be read"
     assert errors == [text, text]
 
-    recorder = Recorder(path.with_name("whole.mcap"), scenario.METADATA)
+    recorder = Recorder(LogFile(path.with_name("whole.mcap"), scenario.METADATA))
     for call in scenario.calls(seed=4, milliseconds=500):
         call.make(recorder)
     recorder.close()
@@ -112,13 +123,15 @@ def test_a_full_disk_is_an_error_and_keeps_what_was_recorded(path: Path) -> None
         assert rows == expected[name][: len(rows)]
 
 
-def test_a_disk_without_room_for_the_metadata(path: Path) -> None:
-    (text,) = _fill_disk(path, limit=100, milliseconds=10)
+@each_kind
+def test_a_disk_without_room_for_the_metadata(kind: LogKind, path: Path) -> None:
+    (text,) = _fill_disk(kind, path, limit=100, milliseconds=10)
     assert "File too large" in text
 
 
-def test_a_disk_that_is_full_when_the_log_is_closed(path: Path) -> None:
-    (text,) = _fill_disk(path, limit=12_000, milliseconds=30)
+@each_kind
+def test_a_disk_that_is_full_when_the_log_is_closed(kind: LogKind, path: Path) -> None:
+    (text,) = _fill_disk(kind, path, limit=12_000, milliseconds=30)
     assert "File too large" in text
     assert read_log(path).raw_force.stamps_ns.size == 30
 

@@ -36,6 +36,7 @@ from drivers.contract.messages import (
     Vector3,
     Wrench,
 )
+from hil.log_file import LogFile
 from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 from hil.ros_messages import ContactTruth, quaternion
@@ -67,7 +68,7 @@ QUIET = Snapshot(0, None, (0.0,) * 6, None, None, None, None)
 
 def _tell(method: str, *arguments: object) -> Log:
     with TemporaryDirectory() as folder:
-        recorder = Recorder(Path(folder) / "run.mcap", {})
+        recorder = Recorder(LogFile(Path(folder) / "run.mcap", {}))
         getattr(recorder, method)(*arguments)
         recorder.close()
         return read_log(Path(folder) / "run.mcap")
@@ -181,7 +182,7 @@ def test_metadata(tmp_path: Path) -> None:
         "empty": {},
         "run": {"": "µ"},
     }
-    Recorder(tmp_path / "run.mcap", metadata).close()
+    Recorder(LogFile(tmp_path / "run.mcap", metadata)).close()
     assert read_log(tmp_path / "run.mcap").metadata == metadata
 
 

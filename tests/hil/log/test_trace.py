@@ -8,6 +8,7 @@ import pytest
 from controllers.messages import PhaseChange, SkillPhase, Snapshot, Tick, Verdict
 from drivers.contract.errors import LogError
 from drivers.contract.messages import ForceSample, Pose, StageState
+from hil.log_file import LogFile
 from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 
@@ -30,7 +31,7 @@ PHASES = {
 @pytest.fixture
 def log(tmp_path: Path) -> Log:
     """Samples from 0 ms on, ticks from 15 ms on; f_x is the time in ms, depth falls 1 um per ms."""
-    recorder = Recorder(tmp_path / "run.mcap", {})
+    recorder = Recorder(LogFile(tmp_path / "run.mcap", {}))
     for ms in range(100):
         now_ns = START_NS + ms * MS
         if ms in PHASES:
@@ -90,7 +91,7 @@ def test_the_bias_is_the_newest_one_and_before_the_first_that_one(log: Log) -> N
 
 
 def test_without_ticks_bias_and_depth_are_unknown(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path / "run.mcap", {})
+    recorder = Recorder(LogFile(tmp_path / "run.mcap", {}))
     recorder.on_phase(PhaseChange(0, 1, SkillPhase.INSERT, "", 0))
     recorder.on_sample(ForceSample(1, 1, 1, ZERO))
     recorder.close()

@@ -22,6 +22,7 @@ from controllers.messages import (
     Verdict,
 )
 from drivers.contract.messages import ForceSample, Pose, StageState, Vector3, Wrench
+from hil.log_file import LogFile
 from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 from hil.ros_messages import ContactTruth
@@ -74,7 +75,7 @@ class RunWriter:
     ) -> None:
         self.path = path
         self.now_ns = START_NS
-        self._recorder = Recorder(path, about)
+        self._recorder = Recorder(LogFile(path, about))
         self._bias: Wrench = (*(b * 1e-3 for b in bias_mN), 0.0, 0.0, 0.0)  # type: ignore[assignment]
         self._busy_ns = busy_ns
         self._samples = 0
@@ -154,7 +155,7 @@ class RunWriter:
         self.sample((0.0, 0.0, 0.0), 2300.0)
         self.phase(number, end, "" if end is SkillPhase.DONE else "it did not fit")
 
-    def close(self) -> Log:
+    def close(self, ending: str = "") -> Log:
         """Finish the log and read it."""
-        self._recorder.close()
+        self._recorder.close(ending)
         return read_log(self.path)

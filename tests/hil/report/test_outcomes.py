@@ -108,6 +108,17 @@ def test_a_run_that_a_failure_ends_says_so(write_run: Callable[..., RunWriter]) 
     )
 
 
+def test_a_run_that_was_ended_says_why_in_its_own_words(
+    write_run: Callable[..., RunWriter],
+) -> None:
+    run = write_run(asked=2)
+    run.insertion(1)
+    assert early_end(summarise(run.close("Somebody pulled the plug."))) == (
+        "Somebody pulled the plug.",
+        "1 of the 2 insertions asked for were begun.",
+    )
+
+
 def test_a_run_that_ends_without_a_cause_says_so(write_run: Callable[..., RunWriter]) -> None:
     run = write_run(asked=2)
     run.insertion(1)

@@ -9,6 +9,7 @@ from controllers.messages import SkillPhase
 from drivers.contract.clock import ManualClock
 from hil.cell import Cell
 from hil.config import load_cell
+from hil.log_file import LogFile
 from hil.log_reader import read_log
 from hil.metadata import metadata
 from hil.recorder import Recorder
@@ -23,7 +24,7 @@ def test_summary_and_report_of_one_insertion(tmp_path: Path) -> None:
     config = load_cell(CELL)
     cell = Cell(config, "expert", ManualClock(), np.random.default_rng(1))
     path = tmp_path / "run.mcap"
-    recorder = Recorder(path, metadata(config, "expert", 1, 1, real_time=False))
+    recorder = Recorder(LogFile(path, metadata(config, "expert", 1, 1, real_time=False)))
     cell.follow(recorder)
     cell.connect()
     outcome = cell.insert_part(1)

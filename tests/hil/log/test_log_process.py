@@ -1,0 +1,134 @@
+"""A log in a process of its own holds what a plain one holds; its writer outlives its sender."""
+
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from drivers.contract.errors import LogError
+from drivers.contract.messages import ForceSample
+from hil.log_file import LogFile
+from hil.log_process import LogProcess
+from hil.log_reader import read_log
+from hil.recorder import Recorder
+from tests.hil.log import scenario
+
+MS = 1_000_000
+ZERO = (0.0,) * 6
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "run.mcap"
+
+
+def _writer_pid() -> int:
+    (writer,) = multiprocessing.active_children()
+    assert writer.pid is not None
+    return writer.pid
+
+
+def _sample(ms: int) -> ForceSample:
+    return ForceSample(ms * MS, ms * MS, ms, ZERO)
+
+
+def _record_samples(recorder: Recorder, milliseconds: int) -> None:
+    for ms in range(milliseconds):
+        recorder.on_sample(_sample(ms))
+
+
+def test_both_kinds_hold_the_same(tmp_path: Path) -> None:
+    logs = []
+    for kind in (LogFile, LogProcess):
+        path = tmp_path / kind.__name__
+        recorder = Recorder(kind(path, scenario.METADATA))
+        for call in scenario.calls(seed=5, milliseconds=500):
+            call.make(recorder)
+        recorder.close()
+        logs.append(read_log(path))
+    plain, sent = logs
+    assert sent.complete
+    assert sent.metadata == plain.metadata
+    assert scenario.rows(sent) == scenario.rows(plain)
+    assert plain.raw_force.sequences.size > 200
+
+
+def test_what_is_flushed_comes_to_the_disk_without_more(path: Path) -> None:
+    log = LogProcess(path, {})
+    recorder = Recorder(log)
+    recorder.on_sample(_sample(0))
+    recorder.on_sample(_sample(1))
+    log.flush()
+    deadline_s = time.monotonic() + 10.0
+    while read_log(path).raw_force.sequences.tolist() != [0, 1]:
+        assert time.monotonic() < deadline_s
+        time.sleep(0.01)
+    recorder.close()
+
+
+def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> None:
+    log = LogProcess(path, scenario.METADATA)
+    recorder = Recorder(log)
+    os.kill(_writer_pid(), signal.SIGKILL)
+    died = rf"the process that writes the log {path} has died"
+    with pytest.raises(LogError, match=died):
+        _record_samples(recorder, 2000)
+    assert not log.usable
+    with pytest.raises(LogError, match=died):
+        recorder.on_sample(_sample(2000))
+    recorder.close()
+    assert read_log(path).metadata == scenario.METADATA
+
+
+def test_a_writer_that_dies_before_the_end_is_an_error_at_the_end(path: Path) -> None:
+    log = LogProcess(path, {})
+    os.kill(_writer_pid(), signal.SIGSTOP)
+    log.write("/force/raw", b"", 0, 0)
+    os.kill(_writer_pid(), signal.SIGKILL)
+    with pytest.raises(LogError, match="has died"):
+        log.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_to_the_whole_terminal_do_not_end_the_writer(
+    path: Path, number: signal.Signals
+) -> None:
+    recorder = Recorder(LogProcess(path, {}))
+    os.kill(_writer_pid(), number)
+    _record_samples(recorder, 100)
+    recorder.close()
+    assert read_log(path).raw_force.sequences.tolist() == list(range(100))
+
+
+SENDER = """
+    import os, signal, sys
+    from pathlib import Path
+    from drivers.contract.messages import ForceSample
+    from hil.log_process import LogProcess
+    from hil.recorder import Recorder
+
+    log = LogProcess(Path(sys.argv[1]), {})
+    recorder = Recorder(log)
+    for ms in range(100):
+        recorder.on_sample(ForceSample(ms * 1_000_000, ms * 1_000_000, ms, (0.0,) * 6))
+    log.flush()
+    if sys.argv[2] == "killed":
+        os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.parametrize("ending", ["killed", "exited"])
+def test_the_writer_finishes_the_file_of_a_sender_that_is_gone(path: Path, ending: str) -> None:
+    command = [sys.executable, "-W", "error", "-c", textwrap.dedent(SENDER), str(path), ending]
+    done = subprocess.run(command, capture_output=True, timeout=60.0)
+    assert done.stderr == b""
+    assert done.returncode == (-signal.SIGKILL if ending == "killed" else 0)
+    log = read_log(path)
+    assert log.complete
+    assert log.raw_force.sequences.tolist() == list(range(100))
