@@ -8,7 +8,7 @@ axis: the same estimate at a tenth of the cost.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from filterpy.common import Q_discrete_white_noise
@@ -18,6 +18,7 @@ from scipy.stats import chi2
 
 from controllers.messages import FilterHealth, ForceEstimate
 from controllers.settings import FilterSettings
+from controllers.settled_filter import SettledFilter
 from drivers.contract.errors import TareRefusedError
 from drivers.contract.messages import ForceSample, SensorStatus, Wrench
 
@@ -28,19 +29,6 @@ _SETTLED = 1e-6
 _UNKNOWN_RATE_STD = 10.0
 """Rate uncertainty after a jump: so many noise deviations per sample period."""
 _ZERO: Wrench = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@dataclass(slots=True)
-class _SettledFilter:
-    """Mean of the settled filter with its constant gains; arrays of shape (6,)."""
-
-    dt_ns: int
-    load_gain: NDArray[np.float64]
-    rate_gain: NDArray[np.float64]
-    precision: NDArray[np.float64]
-    """Inverse variance of the innovation."""
-    load: NDArray[np.float64]
-    rate: NDArray[np.float64]
 
 
 class ForceFilter:
@@ -55,14 +43,14 @@ class ForceFilter:
         )
         self._nis_limit = float(chi2.ppf(settings.gate_probability, _AXES))
         self._bias: Wrench | None = None
-        self._offset = np.zeros(_AXES)
+        self._bias_array = np.zeros(_AXES)
         self._kalman = KalmanFilter(dim_x=2 * _AXES, dim_z=_AXES)
         self._kalman.H = np.eye(_AXES, 2 * _AXES)
         self._kalman.R = np.diag(self._noise_std**2)
         self._dt_ns = 0
         self._prior = self._kalman.P
         self._std = _ZERO
-        self._settled: _SettledFilter | None = None
+        self._settled: SettledFilter | None = None
         self._last: ForceSample | None = None
         self._repeats = 1
         self._rejections = 0
@@ -82,15 +70,14 @@ class ForceFilter:
         if not math.isfinite(sum(wrench)):
             self._nis = math.inf
             return self._estimate(stamp_ns, FilterHealth.REJECTED)
-        load = np.array(wrench) - self._offset
         if last is None or stamp_ns <= last.stamp_ns:
-            self._restart(load)
+            self._restart(np.array(wrench) - self._bias_array)
             return self._estimate(stamp_ns, FilterHealth.OK)
-        if not self._fits(stamp_ns - last.stamp_ns, load):
+        if not self._fits(stamp_ns - last.stamp_ns, wrench):
             if self._rejections < self._settings.rejections_max:
                 self._rejections += 1
                 return self._estimate(stamp_ns, FilterHealth.REJECTED)
-            self._restart(load)
+            self._restart(np.array(wrench) - self._bias_array)
         self._rejections = 0
         return self._estimate(stamp_ns, FilterHealth.OK)
 
@@ -125,32 +112,27 @@ class ForceFilter:
             raise TareRefusedError(f"the load drifts by {_in_mN(drift)}")
         bias = loads.mean(axis=0)
         if self._bias is not None:
-            change = np.abs(bias - self._offset)
+            change = np.abs(bias - self._bias_array)
             if (change[:3] > self._settings.bias_change_max_N).any():
                 raise TareRefusedError(
                     f"the bias would change by {_in_mN(change)}, at most "
                     f"{self._settings.bias_change_max_N * 1e3:.1f} mN: is the sensor in contact?"
                 )
-        self._bias, self._offset = _as_wrench(bias), bias
+        self._bias, self._bias_array = _as_wrench(bias), bias
         self._restart(loads[-1] - bias)
         return self._bias
 
-    def _fits(self, dt_ns: int, load: NDArray[np.float64]) -> bool:
-        """Predict, and correct by `load` unless it is an outlier."""
+    def _fits(self, dt_ns: int, wrench: Wrench) -> bool:
+        """Predict, and correct by a reading unless it is an outlier."""
         settled = self._settled
         if settled is None or settled.dt_ns != dt_ns:
             self._unsettle()
-            return self._fits_unsettled(dt_ns, load)
-        predicted = settled.load + (dt_ns * 1e-9) * settled.rate
-        innovation = load - predicted
-        self._nis = float(innovation.dot(innovation * settled.precision))
+            return self._fits_unsettled(dt_ns, np.array(wrench) - self._bias_array)
+        self._nis = settled.update(wrench, self.bias)
         if self._nis > self._nis_limit:
-            settled.load = predicted
             self._unsettle()
             self._skip_correction()
             return False
-        settled.load = predicted + settled.load_gain * innovation
-        settled.rate = settled.rate + settled.rate_gain * innovation
         return True
 
     def _fits_unsettled(self, dt_ns: int, load: NDArray[np.float64]) -> bool:
@@ -175,13 +157,14 @@ class ForceFilter:
         kalman.update(load)
         self._std = self._posterior_std()
         if (np.abs(variance - before) <= _SETTLED * variance).all():
-            self._settled = _SettledFilter(
+            self._settled = SettledFilter(
                 dt_ns,
-                np.diag(kalman.K[:_AXES]),
-                np.diag(kalman.K[_AXES:]),
-                1.0 / innovation_variance,
-                kalman.x[:_AXES],
-                kalman.x[_AXES:],
+                load_gain=_as_wrench(np.diag(kalman.K[:_AXES])),
+                rate_gain=_as_wrench(np.diag(kalman.K[_AXES:])),
+                precision=_as_wrench(1.0 / innovation_variance),
+                nis_limit=self._nis_limit,
+                load=_as_wrench(kalman.x[:_AXES]),
+                rate=_as_wrench(kalman.x[_AXES:]),
             )
         return True
 
@@ -214,12 +197,10 @@ class ForceFilter:
             health |= FilterHealth.UNTARED
         settled = self._settled
         if settled is None:
-            load, rate = self._kalman.x[:_AXES], self._kalman.x[_AXES:]
+            load, rate = _as_wrench(self._kalman.x[:_AXES]), _as_wrench(self._kalman.x[_AXES:])
         else:
-            load, rate = settled.load, settled.rate
-        return ForceEstimate(
-            stamp_ns, _as_wrench(load), _as_wrench(rate), self._std, self._nis, health
-        )
+            load, rate = cast(Wrench, settled.load), cast(Wrench, settled.rate)
+        return ForceEstimate(stamp_ns, load, rate, self._std, self._nis, health)
 
 
 def _as_wrench(values: NDArray[np.float64]) -> Wrench:
