@@ -34,10 +34,11 @@ from controllers.messages import (
     Snapshot,
     Verdict,
 )
-from drivers.contract.messages import Pose, Vector3
+from drivers.contract.messages import ZERO3, Pose, Vector3
 
 GOVERNOR_DEADBAND = 0.9
-"""A running move is slowed once the cap is this far below its speed, not for every sample."""
+"""A cap lower than this share of a speed counts: a running move is slowed, not for every sample,
+and a step that the load makes so much slower is reduced, not every one that carries noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,10 +213,12 @@ def _reduced(
     travel = Travel.of(translation, rotation, limits.lever_m)
     load = weigh(limits, Memory(), snapshot)
     speed = governed_speed(limits, load, snapshot.estimate, travel)
+    unloaded = speed_cap(limits, ZERO3, ZERO3, travel)
     if travel.angle_rad > 0.0:
-        speed = min(speed, limits.angular_speed_rad_s * travel.length_m / travel.angle_rad)
-    if speed < limits.speed_m_s:
-        detail = f"{speed * 1e3:.2f} mm/s, limit {limits.speed_m_s * 1e3:.2f} mm/s"
+        turning = limits.angular_speed_rad_s * travel.length_m / travel.angle_rad
+        speed, unloaded = min(speed, turning), min(unloaded, turning)
+    if speed < GOVERNOR_DEADBAND * unloaded:
+        detail = f"{speed * 1e3:.2f} mm/s, without load {unloaded * 1e3:.2f} mm/s"
         reasons.append(Reason(Rule.GOVERNOR, Severity.REDUCE, detail))
     return Step(translation, rotation, travel, speed), tuple(reasons)
 
