@@ -1,7 +1,7 @@
 """What travels between filter, skill, supervisor and gate: frozen values in SI units."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum, IntFlag, StrEnum
 from typing import NamedTuple
 
@@ -131,22 +131,21 @@ class Reason:
         return f"{self.rule}: {self.detail}"
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(NamedTuple):
     """The supervisor's answer; `reasons` is empty exactly for PASS."""
 
     stamp_ns: int
     reasons: tuple[Reason, ...] = ()
     speed_cap_m_s: float = math.inf
     """Path speed that must not be exceeded now."""
-    severity: Severity = field(init=False)
-    """Of the hardest reason."""
 
-    def __post_init__(self) -> None:
+    @property
+    def severity(self) -> Severity:
+        """Of the hardest reason."""
         severity = Severity.PASS
         for reason in self.reasons:
             severity = max(severity, reason.severity)
-        object.__setattr__(self, "severity", severity)
+        return severity
 
 
 class Snapshot(NamedTuple):
