@@ -7,9 +7,11 @@ import pytest
 
 from controllers.governor import Travel
 from controllers.messages import FilterHealth, Reason, Rule, Severity, Verdict
-from controllers.supervisor import Step, displaced
+from controllers.supervisor import Step, displaced, judge
 from drivers.contract.messages import Pose, Vector3
 from tests.controllers.builders import (
+    HOLD_POSE,
+    LIMITS,
     MS,
     NOT_FINITE,
     NOW,
@@ -20,6 +22,7 @@ from tests.controllers.builders import (
     proposal,
     rules,
     sample,
+    snapshot,
     stage,
 )
 
@@ -312,6 +315,17 @@ def test_a_step_is_reduced_once_the_load_takes_a_tenth_of_its_speed(
     assert step is not None
     assert verdict.severity is (Severity.REDUCE if is_told else Severity.PASS)
     assert rules(verdict) == ({Rule.GOVERNOR} if is_told else set())
+
+
+def test_exactly_a_tenth_slower_is_not_told() -> None:
+    brisk = {"speed_m_s": 1.0, "creep_speed_m_s": 0.9, "deceleration_m_s2": 1e6, "reaction_s": 0.0}
+    limits = LIMITS.model_copy(update=brisk)
+    loaded = snapshot(sample=sample((0.0699999, 0.0, 0.0)))
+    wish = proposal((20e-6, 0.0, 0.0))
+    verdict, step = judge(limits, HOLD_POSE, Verdict(NOW), loaded, wish, NOW)
+    assert step is not None
+    assert step.speed_m_s == 0.9
+    assert verdict.severity is Severity.PASS
 
 
 def test_a_turn_at_the_angular_limit_is_not_slowed_by_a_load() -> None:
