@@ -5,9 +5,10 @@ Two kinds of candidate (paper section 3): a rim of the part against the shaft's 
 4N: the rims A1..A2N, then the leading edge B2 against each wall, then the trailing edge B1 against
 each wall. Forces are those of the shaft ON THE PART, in M.
 
-Each circle is treated by its one deepest point. A ring of contact (a coaxial shaft thicker than its
-hole) is therefore not modelled: where the deepest point is undefined the force is zero, which is
-the resultant by symmetry.
+The penetration of a circle is the greatest effective one on it, and acts at the circle's radially
+deepest point, also while that point itself has not entered the other solid. A ring of contact (a
+coaxial shaft thicker than its hole) is therefore not modelled: where the deepest point is undefined
+the force is zero, which is the resultant by symmetry.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.checks import FloatArray, finite_array, non_negative, positive, read_only
-from simulator.deepest import deepest_points
+from simulator.deepest import Heading, deepest_points
+from simulator.entering import effective_penetration
 from simulator.extremum import Search, exact_search
 from simulator.geometry import POSE_SIZE, Part, Shaft, checked_poses
 from simulator.wrench import friction_direction, resultant
@@ -86,9 +88,9 @@ class Contacts:
     overlap: FloatArray
     """(..., C) [m]: radial overlap at the deepest point of endless surfaces; < 0 is clearance."""
     penetration: FloatArray
-    """(..., C) [m]: effective penetration, at least 0; this one makes the force."""
+    """(..., C) [m]: greatest effective penetration, at least 0; this one makes the force."""
     point: FloatArray
-    """(..., C, 3) [m]: deepest point."""
+    """(..., C, 3) [m]: deepest point of endless surfaces; there the force acts."""
     normal: FloatArray
     """(..., C, 3): unit direction in which the shaft pushes the part, or zero if undefined."""
     force: FloatArray
@@ -110,18 +112,17 @@ def solve(
     `sliding`, shape (3,) or (..., 3), is the direction of the shaft's motion relative to the part,
     of any length; a zero vector means no friction. Each force is k*penetration*(n + mu*t), t the
     unit vector of the sliding direction's component tangential to the contact: friction drags the
-    part along with the shaft. `search` finds the deepest points: `exact_search`, or the paper's
-    `discretised_search(n)`. Raises `ValueError` for a pose or sliding direction that is not finite
-    or has the wrong shape, and for a tilt of a quarter turn or more.
+    part along with the shaft. `search` finds the best points of circles: `exact_search`, or the
+    paper's `discretised_search(n)`. Raises `ValueError` for a pose or sliding direction that is not
+    finite or has the wrong shape, and for a tilt of a quarter turn or more.
     """
     poses = checked_poses(poses)
     batch = poses.shape[:-1]
     direction = _sliding_columns(sliding, batch)
     columns = np.ascontiguousarray(poses.reshape(-1, POSE_SIZE).T)
-    found = deepest_points(part, shaft, columns, search)
-    penetration = np.minimum(found.overlap, found.entered)
-    penetration -= found.passed
-    np.maximum(penetration, 0.0, out=penetration)
+    heading = Heading.of(columns)
+    found = deepest_points(part, shaft, heading, search)
+    penetration = effective_penetration(part, shaft, heading, found, search)
 
     force = found.normal
     if law.friction > 0.0:

@@ -74,9 +74,11 @@ class Deepest:
     overlap: FloatArray
     """(C, P) [m]: radial overlap there; negative is clearance."""
     entered: FloatArray
-    """(C, P) [m]: how far the edge in question has come into the other solid, axially."""
+    """(C, P) [m]: how far the deepest point has come into the other solid, axially; for rims the
+    distance to the shaft's nearer end."""
     passed: FloatArray
-    """(C, P) [m]: how far a shaft edge is past the wall, at least 0; 0 for rims."""
+    """(C, P) [m]: how far the deepest point of a shaft edge is past the wall, at least 0; 0 for
+    rims."""
     point: FloatArray
     """(3, C, P) [m]."""
     normal: FloatArray
@@ -85,16 +87,15 @@ class Deepest:
     """(C, P): where the circle is centred on the axis and has no deepest point; None if nowhere."""
 
 
-def deepest_points(part: Part, shaft: Shaft, columns: FloatArray, search: Search) -> Deepest:
-    """Deepest points, in M, of all 4N candidates for poses given as columns, shape (5, P)."""
-    heading = Heading.of(columns)
-    rims, walls, poses = len(part.rim_radii_m), len(part.wall_radii_m), columns.shape[1]
+def deepest_points(part: Part, shaft: Shaft, heading: Heading, search: Search) -> Deepest:
+    """Deepest points, in M, of all 4N candidates for P poses in the heading frame."""
+    rims, walls, poses = len(part.rim_radii_m), len(part.wall_radii_m), len(heading.sin)
     height = part.rim_depths_m[:, np.newaxis] - heading.centre[2]
     behind = np.array([[0.0], [shaft.length_m]])
     end_x = heading.centre[0] - behind * heading.sin
     end_z = heading.centre[2] - behind * heading.cos
     m, b = _problems(part, shaft, heading, height, end_x)
-    e = search(m, b)
+    e = search.direction(m, b)
 
     vectors = np.zeros((3, 2, rims + 2 * walls, poses))
     overlap, entered, passed = np.zeros((3, rims + 2 * walls, poses))

@@ -45,16 +45,16 @@ def awkward_problems(n: int) -> tuple[FloatArray, FloatArray]:
 
 def test_maximum_is_exact_to_rounding_for_the_worst_ratios() -> None:
     m, b = awkward_problems(100_000)
-    found = objective(m, b, exact_search(m, b))
+    found = objective(m, b, exact_search.direction(m, b))
     error = np.abs(found - reference(m, b)) / (np.abs(m).sum(axis=0) + b)
     assert error.max() < 1e-15
 
 
 def test_more_newton_steps_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     m, b = awkward_problems(20_000)
-    usual = exact_search(m, b)
+    usual = exact_search.direction(m, b)
     monkeypatch.setattr(extremum, "NEWTON_STEPS", 12)
-    more = exact_search(m, b)
+    more = exact_search.direction(m, b)
     scale = np.abs(m).sum(axis=0) + b
     assert (np.abs(objective(m, b, usual) - objective(m, b, more)) / scale).max() < 1e-15
     # Where the two maxima merge the direction itself is only defined to about sqrt(rounding).
@@ -70,7 +70,7 @@ def test_no_point_of_a_dense_circle_is_better(
     a: float, c: float, b: float, sign_a: float, sign_c: float
 ) -> None:
     m = np.array([[sign_a * a], [sign_c * c]])
-    e = exact_search(m, np.array([b]))
+    e = exact_search.direction(m, np.array([b]))
     angle = np.linspace(0.0, 2.0 * np.pi, 2000)
     others = objective(m, b, np.stack([np.cos(angle), np.sin(angle)]))
     assert abs(np.hypot(e[0], e[1])[0] - 1.0) < 1e-15
@@ -91,18 +91,18 @@ def test_no_point_of_a_dense_circle_is_better(
     ],
 )
 def test_special_cases(m: tuple[float, float], b: float, expected: tuple[float, float]) -> None:
-    e = exact_search(np.array(m)[:, np.newaxis], np.array([b]))
+    e = exact_search.direction(np.array(m)[:, np.newaxis], np.array([b]))
     np.testing.assert_allclose(e[:, 0], expected, rtol=0.0, atol=1e-15)
 
 
 def test_merging_maxima_without_a_first_component() -> None:
-    e = exact_search(np.array([[0.0], [1.0]]), np.array([1.0]))
+    e = exact_search.direction(np.array([[0.0], [1.0]]), np.array([1.0]))
     np.testing.assert_allclose(e[:, 0], [0.0, 1.0], rtol=0.0, atol=1e-6)
 
 
 def test_the_discretised_search_takes_the_best_of_its_points() -> None:
     m = np.array([[0.0, 0.0, -1.0, 0.7], [1.0, -1.0, 0.0, 0.8]])
-    e = discretised_search(4)(m, np.zeros(4))
+    e = discretised_search(4).direction(m, np.zeros(4))
     expected = np.array([[0.0, 0.0, -1.0, 0.0], [1.0, -1.0, 0.0, 1.0]])
     np.testing.assert_allclose(e, expected, rtol=0.0, atol=1e-15)
 
