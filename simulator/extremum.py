@@ -48,7 +48,7 @@ class Search:
 
 NEWTON_STEPS = 5
 CUTS = 16
-ROUNDS = 15
+ROUNDS = 14
 _TINY = 1e-300
 _FLOOR = 1e-20
 _CHUNK_POINTS = 1 << 20
@@ -89,7 +89,7 @@ def _highest_peak(height: Height, side: FloatArray, ends: FloatArray) -> FloatAr
     """Greatest values (n,) of a height on half circles; see `Search.highest`.
 
     Of evenly spaced points on an arc the best one has the peak between its neighbours. So each
-    round shortens an arc by half the number of cuts; the last arcs are below 1e-13 rad.
+    round shortens an arc by half the number of cuts; the last arcs are below 1e-12 rad.
     """
     low, width = ends[:-1], np.diff(ends, axis=0) / CUTS
     steps = np.arange(CUTS + 1.0)[:, np.newaxis, np.newaxis]

@@ -81,12 +81,9 @@ def test_limits_hold_and_the_motion_ends_at_rest(
     fastest = max(start, limit)
     assert (v >= 0.0).all()
     assert v.max() <= fastest * (1 + 1e-12)
-    assert (
-        np.abs(np.diff(v) - np.clip(np.diff(v), -acceleration * dt, acceleration * dt)).max(
-            initial=0.0
-        )
-        <= 1e-12 * fastest
-    )
+    # `dt` is a difference of times, so it is only known to their rounding.
+    allowed = acceleration * (dt + 2.0 * np.spacing(t[-1])) + 1e-12 * fastest
+    assert (np.abs(np.diff(v)) <= allowed).all()
     # Position is the integral of speed: it lies between the bounds of constant acceleration.
     assert (np.diff(x) >= -1e-15 * distance).all()
     mean = 0.5 * (v[1:] + v[:-1]) * dt
