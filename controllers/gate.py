@@ -94,7 +94,7 @@ class Gate:
         if step is None or snapshot.stage is None:
             return Sent(now_ns, proposal.number, verdict, None)
         target = displaced(snapshot.stage.pose, step)
-        if step.travel.length_m > 0.0:
+        if any((*step.translation, *step.rotation)):
             speeds = _stage_speeds(step.travel, step.speed_m_s)
             command = self._stage.move_to(target, *speeds)
             retreats = step.translation[2] < 0.0
@@ -179,5 +179,5 @@ class Gate:
 
 def _stage_speeds(travel: Travel, speed_m_s: float) -> tuple[float, float]:
     """Return linear [m/s] and angular [rad/s] speed of a move along `travel` at `speed_m_s`."""
-    share = speed_m_s / travel.length_m
-    return travel.linear_m * share, travel.angle_rad * share
+    share = min(1.0, travel.linear_m / travel.length_m)
+    return speed_m_s * share, speed_m_s / travel.length_m * travel.angle_rad

@@ -39,6 +39,8 @@ from drivers.contract.messages import ZERO3, Pose, Vector3
 GOVERNOR_DEADBAND = 0.9
 """A cap lower than this share of a speed counts: a running move is slowed, not for every sample,
 and a step that the load makes so much slower is reduced, not every one that carries noise."""
+SHORTEST_MOVE_M = 1e-15
+"""No stage moves by less, and a speed divided by much less than this may overflow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,6 +213,8 @@ def _reduced(
         asked = ", ".join(f"{math.degrees(v):.4f}" for v in proposal.rotation)
         reasons.append(Reason(Rule.STEP_BOX, Severity.REDUCE, f"asked for ({asked}) deg"))
     travel = Travel.of(translation, rotation, limits.lever_m)
+    if travel.length_m < SHORTEST_MOVE_M:
+        translation, rotation = ZERO3, ZERO3
     load = weigh(limits, Memory(), snapshot)
     speed = governed_speed(limits, load, snapshot.estimate, travel)
     unloaded = speed_cap(limits, ZERO3, ZERO3, travel)

@@ -371,6 +371,28 @@ def test_the_first_standing_verdict_is_a_hold_that_says_why() -> None:
     assert (first.rule, first.severity) == (Rule.MISSING_DATA, Severity.HOLD)
 
 
+@pytest.mark.parametrize(
+    ("length_m", "moves"),
+    [(5e-324, 0), (2.2250738585e-313, 0), (0.999e-15, 0), (1e-15, 1), (1.001e-15, 1)],
+)
+def test_a_step_shorter_than_a_femtometre_is_none(length_m: float, moves: int) -> None:
+    """Over a length near the smallest number a speed would be divided to infinity."""
+    bench = Bench()
+    sent = send(bench, (0.0, 0.0, length_m))
+    assert len(bench.stage.moves) == moves
+    assert all(0.0 < speed <= 0.005 for _, speed, _ in bench.stage.moves)
+    assert sent.translation == (0.0, 0.0, length_m * moves)
+
+
+def test_rounding_of_the_path_does_not_lift_the_speed() -> None:
+    """The length of this step differs by rounding between its two ways to be added up."""
+    bench = Bench()
+    step = (2.1575356909223864e-06, 2.7505234008803886e-06, 4.019550071772e-06)
+    sent = send(bench, step)
+    ((_, speed, _),) = bench.stage.moves
+    assert speed == sent.speed_m_s
+
+
 anything = st.floats() | st.sampled_from([0.0, 20e-6, -20e-6, 60e-6, 1.0, math.nan, math.inf])
 vectors = st.tuples(anything, anything, anything)
 plausible = st.floats(-0.3, 0.3)
