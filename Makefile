@@ -6,7 +6,7 @@ READY := $(VENV)/ready
 LOG ?= runs/$(shell date +%Y%m%d-%H%M%S).mcap
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: run test quick check bench mutation figures clean
+.PHONY: run test quick check fuzz bench mutation figures clean
 
 run: $(READY)  ## insert 30 parts on the mock cell; log and report go to runs/
 	@mkdir -p $(dir $(LOG))
@@ -24,6 +24,9 @@ check: $(READY)  ## format, lint, types, layers
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+fuzz: $(READY)  ## the property tests with new examples, other ones each time
+	$(BIN)/python -m pytest -n 2 -m hypothesis --hypothesis-profile fuzz
 
 bench: $(READY)  ## speed, measured side by side on this machine
 	$(BIN)/python benchmarks/contact_solves.py
