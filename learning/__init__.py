@@ -1,0 +1,1 @@
+"""Learning to insert: environments to learn in."""
