@@ -1,71 +1,26 @@
-"""Contact of a rigid shaft with elastic walls: penetration, force and torque.
+"""Contact of a rigid shaft with elastic walls: penetration, force, torque and energy.
 
-Two kinds of candidate (paper section 3): a rim of the part against the shaft's surface
-(shaft-based), and an edge circle of the shaft against a wall (hole-based). For N holes there are
-4N: the rims A1..A2N, then the leading edge B2 against each wall, then the trailing edge B1 against
-each wall. Forces are those of the shaft ON THE PART, in M.
-
-The penetration of a circle is the greatest effective one on it, and acts at the circle's radially
-deepest point, also while that point itself has not entered the other solid. A ring of contact (a
-coaxial shaft thicker than its hole) is therefore not modelled: where the deepest point is undefined
-the force is zero, which is the resultant by symmetry.
+Forces are those of the shaft ON THE PART, in M. The penetration of a circle is the greatest
+effective one on it, and acts at the point that is deepest below the other solid's faces, also while
+that point itself has not entered the other solid. Three more points a quarter turn apart stand for
+a circle that touches all around; see `simulator.ring`.
 """
 
 from dataclasses import dataclass
-from enum import IntEnum
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from simulator.blocking import checked_entered, stand_on_faces, standing
+from simulator.candidates import Candidates, candidates
 from simulator.checks import FloatArray, finite_array, non_negative, positive, read_only
-from simulator.deepest import Heading, deepest_points
-from simulator.entering import effective_penetration
+from simulator.deepest import deepest_points
+from simulator.entering import effective_penetration, meet_faces
 from simulator.extremum import Search, exact_search
 from simulator.geometry import POSE_SIZE, Part, Shaft, checked_poses
+from simulator.heading import Heading
+from simulator.ring import ring_points
 from simulator.wrench import friction_direction, resultant
-
-IntArray = npt.NDArray[np.int64]
-
-
-class Kind(IntEnum):
-    """Which two features meet."""
-
-    RIM = 0
-    LEADING_EDGE = 1
-    TRAILING_EDGE = 2
-
-
-class Station(IntEnum):
-    """Where along a wall a candidate acts.
-
-    The upper rim and B1 form one station, B2 and the lower rim the other.
-    """
-
-    UPPER = 0
-    LOWER = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Candidates:
-    """What each of the C = 4N candidates is; read-only integer arrays of shape (C,)."""
-
-    kind: IntArray
-    hole: IntArray
-    station: IntArray
-
-
-@lru_cache(maxsize=32)
-def candidates(holes: int) -> Candidates:
-    """The candidates of a part with `holes` holes, in the order of the arrays in `Contacts`."""
-    wall = np.arange(holes)
-    kind = np.repeat([Kind.RIM, Kind.LEADING_EDGE, Kind.TRAILING_EDGE], [2 * holes, holes, holes])
-    station = np.concatenate([np.tile([0, 1], holes), np.ones(holes), np.zeros(holes)])
-    table = [kind, np.concatenate([np.repeat(wall, 2), wall, wall]), station]
-    rows = [column.astype(np.int64) for column in table]
-    for row in rows:
-        row.setflags(write=False)
-    return Candidates(*rows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +36,55 @@ class ContactLaw:
 
 
 @dataclass(frozen=True, slots=True)
+class Ring:
+    """The three other points of circles that touch all around; zero where only one point touches.
+
+    Read-only arrays, in M; on the axis after C are the points a quarter, a half and three quarters
+    of a turn from the first one.
+    """
+
+    penetration: FloatArray
+    """(..., C, 3) [m]: effective penetration of each point, at least 0."""
+    point: FloatArray
+    """(..., C, 3, 3) [m]."""
+    normal: FloatArray
+    """(..., C, 3, 3): unit direction in which the shaft pushes the part."""
+    force: FloatArray
+    """(..., C, 3, 3) [N]: force on the part."""
+
+
+@dataclass(frozen=True, slots=True)
 class Contacts:
     """Contacts of a batch of poses (...): read-only arrays, in M."""
 
     candidates: Candidates
+    law: ContactLaw
     overlap: FloatArray
-    """(..., C) [m]: radial overlap at the deepest point of endless surfaces; < 0 is clearance."""
+    """(..., C) [m]: depth of `point` below the endless faces of the other solid; < 0 is clearance.
+    Of circles that clear the bore or the shaft's diameter, that clearance."""
     penetration: FloatArray
     """(..., C) [m]: greatest effective penetration, at least 0; this one makes the force."""
     point: FloatArray
-    """(..., C, 3) [m]: deepest point of endless surfaces; there the force acts."""
+    """(..., C, 3) [m]: point of the circle, or of its tube, deepest below the other solid's endless
+    faces; there the force acts."""
     normal: FloatArray
-    """(..., C, 3): unit direction in which the shaft pushes the part, or zero if undefined."""
+    """(..., C, 3): unit direction in which the shaft pushes the part."""
     force: FloatArray
-    """(..., C, 3) [N]: force on the part."""
+    """(..., C, 3) [N]: force on the part at `point`, without that of the ring."""
     wrench: FloatArray
-    """(..., 6) [N, N*m]: resultant force, and torque about the origin of M."""
+    """(..., 6) [N, N*m]: resultant of all forces, and torque about the origin of M."""
+    ring: Ring
+
+    @property
+    def energy(self) -> FloatArray:
+        """Elastic energy (...) [J]: the sum of stiffness * penetration^2 / 2 over all points."""
+        depths = np.concatenate([self.penetration[..., np.newaxis], self.ring.penetration], axis=-1)
+        squares = depths.reshape(*depths.shape[:-2], -1)
+        squares = squares * squares
+        total = np.zeros(squares.shape[:-1])
+        for index in range(squares.shape[-1]):  # in this order for any batch
+            total += squares[..., index]
+        return 0.5 * self.law.stiffness_N_m * total
 
 
 def solve(
@@ -106,43 +94,93 @@ def solve(
     sliding: npt.ArrayLike,
     law: ContactLaw = ContactLaw(),
     search: Search = exact_search,
+    entered: npt.ArrayLike | None = None,
 ) -> Contacts:
     """Contacts of `shaft` with `part` for `poses`, shape (..., 5).
 
     `sliding`, shape (3,) or (..., 3), is the direction of the shaft's motion relative to the part,
     of any length; a zero vector means no friction. Each force is k*penetration*(n + mu*t), t the
     unit vector of the sliding direction's component tangential to the contact: friction drags the
-    part along with the shaft. `search` finds the best points of circles: `exact_search`, or the
-    paper's `discretised_search(n)`. Raises `ValueError` for a pose or sliding direction that is not
-    finite or has the wrong shape, and for a tilt of a quarter turn or more.
+    part along with the shaft. (Where two faces of a surface share a contact at the edge between
+    them, n is their mean and shorter than 1.) `search` finds the best points of circles:
+    `exact_search`, or the paper's `discretised_search(n)`.
+
+    With `entered`, shape (..., N), an end that reaches out over the mouth of a wall not entered
+    stands on its face: that contact, in the row of the first edge, then is the wall's only one
+    (`update_entered` keeps the state). Without, no wall blocks the way.
+
+    Raises `ValueError` for a pose or sliding direction that is not finite or has the wrong shape,
+    for a tilt of a quarter turn or more, and for an `entered` of another type or shape.
     """
     poses = checked_poses(poses)
     batch = poses.shape[:-1]
     direction = _sliding_columns(sliding, batch)
     columns = np.ascontiguousarray(poses.reshape(-1, POSE_SIZE).T)
     heading = Heading.of(columns)
+    table = candidates(part, shaft)
     found = deepest_points(part, shaft, heading, search)
-    penetration = effective_penetration(part, shaft, heading, found, search)
+    if not (part.is_plain and shaft.is_plain):
+        meet_faces(part, shaft, heading, table, found, search)
+    penetration = effective_penetration(part, shaft, heading, table, found, search)
+    if entered is not None:
+        has_entered = checked_entered(part, poses, entered).reshape(-1, len(part.holes)).T
+        standing_m = standing(part, shaft, heading, has_entered)
+        penetration[(standing_m > 0.0)[table.hole]] = 0.0
+    others = ring_points(part, shaft, heading, table, found, penetration)
+    if entered is not None:
+        stand_on_faces(part, shaft, heading, standing_m, found)
+        first_edge = penetration[len(part.rim_holes) :][: len(part.holes)]
+        np.maximum(first_edge, standing_m, out=first_edge)
 
-    force = found.normal
-    if law.friction > 0.0:
-        force = friction_direction(found.normal, direction)
-        force *= law.friction
-        force += found.normal
-    force = (law.stiffness_N_m * penetration) * force
-    if found.undefined is not None:
-        force[:, found.undefined] = 0.0
-
+    force = _forces(found.normal, penetration * found.share, direction, law)
+    wrench = resultant(found.point, force)
     lead = (*batch, len(penetration))
+    if others is None:
+        ring = _no_ring(lead)
+    else:
+        depth, point, normal = others
+        push = _forces(normal, depth, direction[:, np.newaxis], law)
+        wrench += resultant(_in_rows(point), _in_rows(push))
+        ring = Ring(
+            read_only(depth.transpose(2, 1, 0).reshape(*lead, 3)),
+            *(
+                read_only(a.transpose(3, 2, 1, 0).reshape(*lead, 3, 3))
+                for a in (point, normal, push)
+            ),
+        )
     return Contacts(
-        candidates=candidates(len(part.holes)),
+        candidates=table,
+        law=law,
         overlap=read_only(found.overlap.T.reshape(lead)),
         penetration=read_only(penetration.T.reshape(lead)),
         point=read_only(found.point.T.reshape(*lead, 3)),
         normal=read_only(found.normal.T.reshape(*lead, 3)),
         force=read_only(force.T.reshape(*lead, 3)),
-        wrench=read_only(resultant(found.point, force).T.reshape(*batch, 6)),
+        wrench=read_only(wrench.T.reshape(*batch, 6)),
+        ring=ring,
     )
+
+
+def _forces(
+    normal: FloatArray, penetration: FloatArray, direction: FloatArray, law: ContactLaw
+) -> FloatArray:
+    """Forces (3, ...) of contacts with these unit normals (3, ...) and penetrations (...)."""
+    force = normal
+    if law.friction > 0.0:
+        force = friction_direction(normal, direction)
+        force *= law.friction
+        force += normal
+    return np.asarray((law.stiffness_N_m * penetration) * force)
+
+
+def _in_rows(vectors: FloatArray) -> FloatArray:
+    """Vectors (3, 3, C, P) of a ring's points as (3, 3C, P)."""
+    return vectors.reshape(3, -1, vectors.shape[-1])
+
+
+def _no_ring(lead: tuple[int, ...]) -> Ring:
+    scalars, vectors = read_only(np.zeros((*lead, 3))), read_only(np.zeros((*lead, 3, 3)))
+    return Ring(scalars, vectors, vectors, vectors)
 
 
 def _sliding_columns(sliding: npt.ArrayLike, batch: tuple[int, ...]) -> FloatArray:

@@ -1,7 +1,8 @@
-"""Deepest point of every contact candidate.
+"""Radially deepest point of every contact candidate, in closed form.
 
-Worked in the heading frame: M turned about z so that the shaft's axis is u = (sin, 0, cos). With e
-the unit vector to a point of the circle, a rim of radius R at height h above B2's centre p has
+That is the deepest point against the bore and against the cylinder of the shaft's diameter. Worked
+in the heading frame, in which the shaft's axis is u = (sin, 0, cos). With e the unit vector to a
+point of the circle, a rim of radius R at height h above the leading plane's centre p has
 
     (distance to the shaft's axis)^2 = const - R (2 m.e + R sin^2 e1^2)
     with m = (cos (cos p1 + sin h), p2),
@@ -11,60 +12,20 @@ and an edge circle of the shaft with centre c, points c + r (e1 (0, 1, 0) + e2 (
     (distance to the hole's axis)^2 = const + r (2 m.e + r sin^2 e1^2)
     with m = (p2, cos c1):
 
-the smallest distance of the first and the largest of the second are the same search.
+the smallest distance of the first and the largest of the second are the same search. A circle that
+is centred on the axis and not tilted has e = (1, 0).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from simulator.checks import FloatArray
 from simulator.extremum import Search
 from simulator.geometry import Part, Shaft
+from simulator.heading import Heading
 
 _SMALLEST = 1e-150
-
-
-@dataclass(frozen=True, slots=True)
-class Heading:
-    """Columns of P poses, turned about z into the heading frame."""
-
-    turn: FloatArray
-    """(2, P): horizontal unit vector of the tilt in M; (1, 0) for an upright shaft."""
-    centre: FloatArray
-    """(3, P) [m]: centre of B2 in the heading frame."""
-    sin: FloatArray
-    """(P,): sine of the angle between the shaft's axis and z."""
-    cos: FloatArray
-    """(P,): cosine of that angle."""
-
-    @classmethod
-    def of(cls, columns: FloatArray) -> "Heading":
-        """Heading of poses given as columns, shape (5, P)."""
-        sin_xy, cos_xy = np.sin(columns[3:]), np.cos(columns[3:])
-        turn = np.negative(sin_xy[::-1])
-        np.multiply(sin_xy[1], cos_xy[0], out=turn[0])
-        sin = np.hypot(turn[0], turn[1])
-        upright = sin < _SMALLEST
-        turn /= np.maximum(sin, _SMALLEST)
-        if np.logical_or.reduce(upright):
-            turn[0, upright], turn[1, upright] = 1.0, 0.0
-        centre = columns[:3].copy()
-        np.multiply(turn[0], columns[0], out=centre[0])
-        centre[0] += turn[1] * columns[1]
-        np.multiply(turn[0], columns[1], out=centre[1])
-        centre[1] -= turn[1] * columns[0]
-        return cls(turn, centre, sin, cos_xy[0] * cos_xy[1])
-
-    def to_part(self, vectors: FloatArray) -> None:
-        """Turn `vectors`, shape (3, ..., P), from the heading frame into M, in place."""
-        x, y = vectors[0], vectors[1]
-        crossed = self.turn[1] * x
-        x *= self.turn[0]
-        x -= self.turn[1] * y
-        y *= self.turn[0]
-        y += crossed
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,29 +43,35 @@ class Deepest:
     point: FloatArray
     """(3, C, P) [m]."""
     normal: FloatArray
-    """(3, C, P): unit direction in which the shaft pushes the part, or zero if undefined."""
-    undefined: npt.NDArray[np.bool_] | None
-    """(C, P): where the circle is centred on the axis and has no deepest point; None if nowhere."""
+    """(3, C, P): unit direction in which the shaft pushes the part."""
+    share: FloatArray
+    """(C, P): share of stiffness * penetration that acts along the normal: 1, but less at an edge
+    between two faces, each of which takes a part."""
+    e: FloatArray
+    """(2, C, P): unit vector to the point, from the circle's centre, along the tilt and across."""
 
 
 def deepest_points(part: Part, shaft: Shaft, heading: Heading, search: Search) -> Deepest:
-    """Deepest points, in M, of all 4N candidates for P poses in the heading frame."""
+    """Radially deepest points, in M, of all C candidates for P poses in the heading frame."""
     rims, walls, poses = len(part.rim_radii_m), len(part.wall_radii_m), len(heading.sin)
+    edges = len(shaft.edge_radii_m)
     height = part.rim_depths_m[:, np.newaxis] - heading.centre[2]
-    behind = np.array([[0.0], [shaft.length_m]])
+    behind = shaft.edge_stations_m[:, np.newaxis]
     end_x = heading.centre[0] - behind * heading.sin
     end_z = heading.centre[2] - behind * heading.cos
     m, b = _problems(part, shaft, heading, height, end_x)
-    e = search.direction(m, b)
+    best = search.direction(m, b)
 
-    vectors = np.zeros((3, 2, rims + 2 * walls, poses))
-    overlap, entered, passed = np.zeros((3, rims + 2 * walls, poses))
-    undefined = None if m[0].all() else _centred(m, walls)
-    found = Deepest(overlap, entered, passed, vectors[:, 0], vectors[:, 1], undefined)
-    _place_rims(found, part, shaft, heading, height, e[:, :rims])
-    _place_edges(found, part, shaft, heading, end_x, end_z, e[:, rims:])
-    if undefined is not None:
-        found.normal[:, undefined] = 0.0
+    count = rims + edges * walls
+    vectors = np.zeros((3, 2, count, poses))
+    overlap, entered, passed = np.zeros((3, count, poses))
+    share = np.ones((count, poses))
+    e = np.empty((2, count, poses))
+    e[:, :rims] = best[:, :rims]
+    e[:, rims:].reshape(2, edges, walls, poses)[...] = best[::-1, rims:, np.newaxis]
+    found = Deepest(overlap, entered, passed, vectors[:, 0], vectors[:, 1], share, e)
+    _place_rims(found, part, shaft, heading, height, best[:, :rims])
+    _place_edges(found, part, shaft, heading, end_x, end_z, best[:, rims:])
     heading.to_part(vectors)
     return found
 
@@ -112,10 +79,11 @@ def deepest_points(part: Part, shaft: Shaft, heading: Heading, search: Search) -
 def _problems(
     part: Part, shaft: Shaft, heading: Heading, height: FloatArray, end_x: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The searches m (2, 2N + 2, P) and b (2N + 2, P): those of the rims, then of B2 and B1."""
+    """The searches m (2, M + E, P) and b (M + E, P): of the rims, then of the shaft's edges."""
     rims, poses = height.shape
     sin, cos, centre = heading.sin, heading.cos, heading.centre
-    m, b = np.empty((2, rims + 2, poses)), np.empty((rims + 2, poses))
+    count = rims + len(end_x)
+    m, b = np.empty((2, count, poses)), np.empty((count, poses))
     np.multiply(sin, height, out=m[0, :rims])
     m[0, :rims] += cos * centre[0]
     m[0, :rims] *= cos
@@ -123,22 +91,14 @@ def _problems(
     np.multiply(cos, end_x, out=m[1, rims:])
     square = sin * sin
     np.multiply(part.rim_radii_m[:, np.newaxis], square, out=b[:rims])
-    np.multiply(shaft.radius_m, square, out=b[rims:])
+    np.multiply(shaft.edge_radii_m[:, np.newaxis], square, out=b[rims:])
     return m, b
-
-
-def _centred(m: FloatArray, walls: int) -> npt.NDArray[np.bool_] | None:
-    """Candidates (C, P) whose search has m = 0; None if there is none."""
-    zero = np.logical_and(m[0] == 0.0, m[1] == 0.0)
-    if not zero.any():
-        return None
-    return np.concatenate([zero[: 2 * walls], zero[2 * walls :].repeat(walls, axis=0)])
 
 
 def _place_rims(
     found: Deepest, part: Part, shaft: Shaft, heading: Heading, height: FloatArray, e: FloatArray
 ) -> None:
-    """Fill in the rows of the rims, in the heading frame, from the best unit vectors (2, 2N, P)."""
+    """Fill in the rows of the rims, in the heading frame, from the best unit vectors (2, M, P)."""
     rims, sin, cos = len(height), heading.sin, heading.cos
     point, normal = found.point[:, :rims], found.normal[:, :rims]
     np.multiply(part.rim_radii_m[:, np.newaxis], e, out=point[:2])
@@ -167,25 +127,31 @@ def _place_edges(
     end_z: FloatArray,
     e: FloatArray,
 ) -> None:
-    """Fill in the rows of B2, then B1, against each wall from the best unit vectors (2, 2, P)."""
-    walls, poses = len(part.wall_radii_m), e.shape[-1]
-    reach = shaft.radius_m * e
-    edge = np.empty((3, 2, 1, poses))
+    """Fill in the rows of the edges against each wall from the best unit vectors (2, E, P)."""
+    rims, walls = len(part.rim_radii_m), len(part.wall_radii_m)
+    edges, poses = e.shape[1:]
+    reach = shaft.edge_radii_m[:, np.newaxis] * e
+    edge = np.empty((3, edges, 1, poses))
     np.add(end_x, heading.cos * reach[1], out=edge[0, :, 0])
     np.add(heading.centre[1], reach[0], out=edge[1, :, 0])
     np.subtract(end_z, heading.sin * reach[1], out=edge[2, :, 0])
     distance = np.hypot(edge[0], edge[1])
-    below = edge[2] - part.rim_depths_m[:, np.newaxis]
 
-    by_wall = (2, walls, poses)
-    entered = found.entered[2 * walls :].reshape(by_wall)
-    passed = found.passed[2 * walls :].reshape(by_wall)
-    entered[0], passed[0] = below[0, 0::2], below[0, 1::2]
-    np.negative(below[1, 1::2], out=entered[1])
-    np.negative(below[1, 0::2], out=passed[1])
+    by_wall, leading = (edges, walls, poses), shaft.leading_edges
+    entered = found.entered[rims:].reshape(by_wall)
+    passed = found.passed[rims:].reshape(by_wall)
+    np.subtract(edge[2], part.wall_entries_m[:, np.newaxis], out=entered)
+    np.subtract(edge[2], part.wall_exits_m[:, np.newaxis], out=passed)
+    behind = -passed[leading:]
+    np.negative(entered[leading:], out=passed[leading:])
+    entered[leading:] = behind
     np.maximum(passed, 0.0, out=passed)
     wall_radii = part.wall_radii_m[:, np.newaxis]
-    np.subtract(distance, wall_radii, out=found.overlap[2 * walls :].reshape(by_wall))
-    found.point[:, 2 * walls :].reshape(3, *by_wall)[...] = edge
+    np.subtract(distance, wall_radii, out=found.overlap[rims:].reshape(by_wall))
+    point = found.point[:, rims:].reshape(3, *by_wall)
+    point[...] = edge
     edge[:2] /= distance
-    found.normal[:2, 2 * walls :].reshape(2, *by_wall)[...] = edge[:2]
+    found.normal[:2, rims:].reshape(2, *by_wall)[...] = edge[:2]
+    if shaft.rounding_m > 0.0:
+        found.overlap[rims : rims + walls] += shaft.rounding_m
+        point[:2, 0] += shaft.rounding_m * edge[:2, 0]

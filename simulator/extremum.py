@@ -16,19 +16,22 @@ The start e2 = c/y with y = max(b, c) + a + (a^2 b)^(1/3) lies left of the root 
 constant factor of it for every ratio a : b : c, so a fixed number of steps reaches machine
 precision.
 
-The effective penetration of a circle has kinks. Its maximum is found by narrowing down arcs on
-which it has one peak, which needs neither derivatives nor the kind of the peak.
+Where several surfaces meet a circle, its height is the least of smooth functions, with kinks. On an
+arc with one peak the sign of the slope tells on which side of a point the peak lies, kink or not,
+so the arc is halved until the peak is known to rounding.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from simulator.checks import FloatArray
 
-Height = Callable[[FloatArray, FloatArray], FloatArray]
-"""Values (..., n) on n circles, at the points given by the two components of unit vectors."""
+Height = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
+"""Values, and their slopes with the angle, on n circles, at the points (..., n) given by the two
+components of unit vectors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,18 +40,18 @@ class Search:
 
     direction: Callable[[FloatArray, FloatArray], FloatArray]
     """Maps m, shape (2, ...), and b, shape (...), to the best unit vector e, shape (2, ...)."""
-    highest: Callable[[Height, FloatArray, FloatArray], FloatArray]
-    """Maps a height on n circles to its greatest values (n,), which lie on half circles.
+    peak: Callable[[Height, FloatArray, FloatArray], FloatArray]
+    """Maps a height on n circles to the unit vectors (2, 2, n) of the greatest, on half circles.
 
-    These are the unit vectors (cos t, side sin t) with `side`, shape (n,), of -1 or 1, and t from 0
-    to pi. The angles in `ends`, shape (A + 1, n), divide each into A arcs, on every one of which
-    the height rises to one peak and falls again.
+    The first one lies just before the peak, where the height still rises, the second just behind.
+    Half circles are the unit vectors (cos t, side sin t) with `side`, shape (n,), of -1 or 1, and t
+    from 0 to pi. The angles in `ends`, shape (A + 1, n), divide each into A arcs, on every one of
+    which the height rises to one peak and falls again.
     """
 
 
 NEWTON_STEPS = 5
-CUTS = 16
-ROUNDS = 14
+HALVINGS = 51
 _TINY = 1e-300
 _FLOOR = 1e-20
 _CHUNK_POINTS = 1 << 20
@@ -85,25 +88,31 @@ def _newton_direction(m: FloatArray, b: FloatArray) -> FloatArray:
     return np.copysign(e, m)
 
 
-def _highest_peak(height: Height, side: FloatArray, ends: FloatArray) -> FloatArray:
-    """Greatest values (n,) of a height on half circles; see `Search.highest`.
-
-    Of evenly spaced points on an arc the best one has the peak between its neighbours. So each
-    round shortens an arc by half the number of cuts; the last arcs are below 1e-12 rad.
-    """
-    low, width = ends[:-1], np.diff(ends, axis=0) / CUTS
-    steps = np.arange(CUTS + 1.0)[:, np.newaxis, np.newaxis]
-    for _ in range(ROUNDS):
-        angle = low + width * steps
-        values = height(np.cos(angle), side * np.sin(angle))
-        best = values.argmax(axis=0)
-        first, last = np.maximum(best - 1, 0), np.minimum(best + 1, CUTS)
-        low, width = low + width * first, width * ((last - first) / CUTS)
-    highest: FloatArray = values.max(axis=(0, 1))
-    return highest
+def halved(
+    is_before: Callable[[FloatArray], npt.NDArray[np.bool_]], low: FloatArray, high: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Between which angles, 1e-15 apart, `is_before` turns from true to false above `low`."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        before = is_before(middle)
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return low, high
 
 
-exact_search = Search(_newton_direction, _highest_peak)
+def _peak_by_slope(height: Height, side: FloatArray, ends: FloatArray) -> FloatArray:
+    """Unit vectors (2, 2, n) about the greatest height on half circles; see `Search.peak`."""
+
+    def is_rising(angle: FloatArray) -> npt.NDArray[np.bool_]:
+        rising: npt.NDArray[np.bool_] = height(np.cos(angle), side * np.sin(angle))[1] * side > 0.0
+        return rising
+
+    angle = np.stack(halved(is_rising, ends[:-1], ends[1:]))
+    best = height(np.cos(angle[0]), side * np.sin(angle[0]))[0].argmax(axis=0)
+    angle = np.take_along_axis(angle, best[np.newaxis, np.newaxis], axis=1)[:, 0]
+    return np.stack([np.cos(angle), side * np.sin(angle)])  # (2 components, 2 sides, n)
+
+
+exact_search = Search(_newton_direction, _peak_by_slope)
 
 
 def discretised_search(points: int) -> Search:
@@ -122,8 +131,8 @@ def discretised_search(points: int) -> Search:
             best[start : start + rows] = (weights[start : start + rows] @ terms).argmax(axis=1)
         return circle[:, best].reshape(m.shape)
 
-    def highest(height: Height, _side: FloatArray, _ends: FloatArray) -> FloatArray:
-        best: FloatArray = height(*circle[..., np.newaxis]).max(axis=0)
-        return best
+    def peak(height: Height, _side: FloatArray, _ends: FloatArray) -> FloatArray:
+        best = circle[:, height(*circle[..., np.newaxis])[0].argmax(axis=0)]
+        return np.stack([best, best], axis=1)
 
-    return Search(direction, highest)
+    return Search(direction, peak)

@@ -1,8 +1,8 @@
 """Insertion phases and the paper's contact states a to i (section 3.1), for parts with N holes.
 
-The phase follows from depth alone. A contact point is a *station* of a wall: its upper rim and the
-shaft's trailing edge form one station, the leading edge and its lower rim the other. So a contact
-that is handed over from the leading edge to the lower rim stays one point.
+The phase follows from depth alone. A contact point is a *station* of a wall: the rims at its mouth
+and the shaft's trailing edges form one station, the leading edges and the lower rim the other. So a
+contact that is handed over from the leading edge to the lower rim stays one point.
 """
 
 from enum import IntEnum
@@ -10,7 +10,8 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from simulator.contact import Contacts, Station
+from simulator.candidates import Station
+from simulator.contact import Contacts
 from simulator.geometry import Part
 
 IntArray = npt.NDArray[np.int64]
@@ -77,8 +78,9 @@ def phase_codes(part: Part, depths_m: npt.ArrayLike) -> IntArray:
     depths = np.asarray(depths_m, dtype=np.float64)
     if not np.isfinite(depths).all():
         raise ValueError("depths_m holds an entry that is not finite; every depth must be finite")
-    passed = np.searchsorted(part.rim_depths_m, depths, side="left")
-    return np.minimum(passed, len(part.rim_depths_m) - 1).astype(np.int64)
+    planes = np.stack([part.wall_entries_m, part.wall_exits_m], axis=-1).ravel()
+    passed = np.searchsorted(planes, depths, side="left")
+    return np.minimum(passed, len(planes) - 1).astype(np.int64)
 
 
 def hole_of(phase_code: int) -> int:
@@ -121,10 +123,9 @@ def contact_state(contacts: Contacts, phase_code: int) -> ContactState:
 
 def touching_stations(contacts: Contacts) -> npt.NDArray[np.bool_]:
     """Which stations touch: shape (..., N, 2), last axis indexed by `Station`."""
-    touching = contacts.penetration > 0.0
-    holes = touching.shape[-1] // 4
-    rims, leading, trailing = np.split(touching, [2 * holes, 3 * holes], axis=-1)
-    stations = rims.reshape(*touching.shape[:-1], holes, 2).copy()
-    stations[..., Station.LOWER] |= leading
-    stations[..., Station.UPPER] |= trailing
-    return stations
+    touching, table = contacts.penetration > 0.0, contacts.candidates
+    holes = int(table.hole[-1]) + 1
+    stations = len(Station) * table.hole + table.station
+    belongs = stations[:, np.newaxis] == np.arange(len(Station) * holes)
+    found: npt.NDArray[np.bool_] = touching @ belongs
+    return found.reshape(*touching.shape[:-1], holes, len(Station))

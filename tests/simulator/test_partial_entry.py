@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from simulator.checks import FloatArray
+from simulator.circle import Circles
 from simulator.contact import solve
-from simulator.entering import Circles
 from simulator.extremum import discretised_search
 from simulator.geometry import Hole, Part, Shaft, shaft_axis, tilt_of
 
@@ -136,14 +136,20 @@ def test_a_half_circle_is_divided_where_the_overlap_of_a_rim_is_least_between_tw
     along, across = rng.uniform(-0.3, 0.3, (2, n)) * sin**2
     circles = Circles(
         is_rim=np.ones(n, dtype=np.bool_),
+        is_trailing=np.zeros(n, dtype=np.bool_),
         radius=np.ones(n),
         shortened=np.sqrt(1.0 - sin * sin),
         along=along,
         across=across,
-        surface=np.ones(n),
-        entered=far,
+        axial=far,
         slope=-sin,
         length=2.0 * far,
+        tube=np.zeros(n),
+        normals=np.stack([np.ones((1, n)), np.zeros((1, n))]),
+        offsets=np.ones((1, n)),
+        rounding=(0.0, 1.0),
+        frame=np.zeros((3, n)),
+        tilt=np.stack([np.sqrt(1.0 - sin * sin), sin]),
     )
     low, crest, high = circles.arc_ends()
     np.testing.assert_array_equal(low, 0.0)
@@ -152,7 +158,7 @@ def test_a_half_circle_is_divided_where_the_overlap_of_a_rim_is_least_between_tw
     assert divided.sum() > 300
 
     def overlap(angle: FloatArray) -> FloatArray:
-        return circles.penetration(np.cos(angle), circles.side() * np.sin(angle))
+        return circles.penetration(np.cos(angle), circles.side() * np.sin(angle))[0]
 
     least = overlap(crest)[divided]
     for step in (-1e-4, 1e-4):

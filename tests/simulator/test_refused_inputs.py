@@ -5,10 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from simulator.blocking import update_entered
 from simulator.contact import ContactLaw, solve
 from simulator.geometry import Hole, Part, Shaft, shaft_axis, tilt_of
 from simulator.initial_pose import initial_poses
 from simulator.plant import Trapezoid, braking
+from simulator.profile import Chamfer, Rounding
 from simulator.sensor import SensorModel, measure
 from simulator.wrench import move_torque
 
@@ -27,6 +29,50 @@ CASES: list[tuple[Callable[[], object], str]] = [
     (lambda: Hole(1e-3, 0.0), r"Hole.thickness_m is 0.0"),
     (lambda: Hole(1e-3, 1e-4, -1e-6), r"Hole.gap_m is -1e-06; it must be finite and at least 0"),
     (lambda: Hole(1e-3, 1e-4, NAN), r"Hole.gap_m is nan"),
+    (lambda: Chamfer(0.0, 1e-5), r"Chamfer.width_m is 0.0; it must be finite and greater than 0"),
+    (lambda: Chamfer(1e-5, NAN), r"Chamfer.height_m is nan"),
+    (lambda: Rounding(-1e-5), r"Rounding.radius_m is -1e-05"),
+    (
+        lambda: Hole(1e-3, 1e-4, entry=Chamfer(1e-5, 1e-4)),
+        r"Hole.entry.height_m is 0.0001; it must be below thickness_m, 0.0001",
+    ),
+    (
+        lambda: Shaft(1e-3, 4e-3, Chamfer(5e-4, 1e-4)),
+        r"Shaft.leading.width_m is 0.0005; it must be below the radius, 0.0005",
+    ),
+    (lambda: Shaft(1e-3, 4e-3, trailing=Chamfer(6e-4, 1e-4)), r"Shaft.trailing.width_m is 0.0006"),
+    (lambda: Shaft(1e-3, 4e-3, Rounding(5e-4)), r"Shaft.leading.radius_m is 0.0005"),
+    (lambda: Shaft(1e-3, 1e-4, Chamfer(1e-5, 1e-4)), r"Shaft.leading makes .* 0.0001 long; .* sho"),
+    (
+        lambda: Shaft(1e-3, 1e-4, Rounding(6e-5), Chamfer(1e-5, 5e-5)),
+        r"Shaft.trailing makes the worked ends .* must be shorter than length_m, 0.0001",
+    ),
+    (lambda: Shaft.of_profile(((0.0, 1e-3),)), r"Shaft.profile_m has shape \(1, 2\)"),
+    (lambda: Shaft.of_profile(((0.0, 1e-3), (NAN, 1e-3))), r"Shaft.profile_m .* must be finite"),
+    (lambda: Shaft.of_profile(((1e-6, 1e-3), (1e-3, 1e-3))), r"Shaft.profile_m .* s must begin"),
+    (lambda: Shaft.of_profile(((0.0, 1e-3), (0.0, 2e-3))), r"Shaft.profile_m .* and increase"),
+    (lambda: Shaft.of_profile(((0.0, 0.0), (1e-3, 1e-3))), r"Shaft.profile_m .* every radius must"),
+    (
+        lambda: Shaft.of_profile(((0.0, 1e-3), (1e-3, 5e-4), (2e-3, 1e-3))),
+        r"Shaft.profile_m is .* it must be convex, with a corner at every point",
+    ),
+    (
+        lambda: Shaft(1e-3, 2e-3, profile_m=((0.0, 5e-4), (1e-3, 5e-4))),
+        r"Shaft.profile_m .* it must end at length_m = 0.002 and be at most, .* = 0.001 wide",
+    ),
+    (
+        lambda: Shaft(1e-3, 1e-3, Rounding(1e-5), profile_m=((0.0, 5e-4), (1e-3, 5e-4))),
+        r"Shaft.profile_m holds both ends; leading and trailing must be None",
+    ),
+    (
+        lambda: solve(PART, SHAFT, POSE, np.zeros(3), entered=[0.0]),
+        r"entered is float64 of shape \(1,\); it must be bool of shape \(1,\)",
+    ),
+    (
+        lambda: update_entered(PART, SHAFT, [POSE, POSE], [True]),
+        r"entered is bool of shape \(1,\); it must be bool of shape \(2, 1\)",
+    ),
+    (lambda: update_entered(PART, SHAFT, [NAN] * 5, [True]), r"poses is nan at index \(0,\)"),
     (lambda: Part(()), r"Part.holes is \(\); it must be a tuple of at least one Hole"),
     (lambda: Part((Hole(1e-3, 1e-4, 1e-3),)), r"Part.holes\[0\].gap_m is 0.001; it must be 0"),
     (lambda: ContactLaw(stiffness_N_m=0.0), r"ContactLaw.stiffness_N_m is 0.0"),

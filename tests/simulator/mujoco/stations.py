@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from simulator.candidates import Station, candidates
 from simulator.checks import FloatArray
-from simulator.contact import Station, candidates
 from tests.simulator.mujoco.cases import Case
 from tests.simulator.mujoco.model import Scene, find_contacts
 
@@ -62,7 +62,7 @@ def of_simulator(case: Case, poses: FloatArray) -> Touches:
     ours = case.solve(poses)
     shape = (len(poses), len(case.part.holes), len(Station))
     depth, normal, point = np.zeros(shape), np.zeros((*shape, 3)), np.zeros((*shape, 3))
-    table = candidates(len(case.part.holes))
+    table = candidates(case.part, case.shaft)
     for c, at in enumerate(zip(table.hole, table.station, strict=True)):
         deeper = ours.penetration[:, c] > depth[:, *at]
         depth[deeper, *at] = ours.penetration[deeper, c]
