@@ -14,6 +14,7 @@ from figures_of import (
     faces,
     force_map,
     frames,
+    jamming,
     mock_cell,
     ring,
 )
@@ -32,6 +33,7 @@ FIGURES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "contact-states": contact_states.draw,
         "force-map": force_map.draw,
         "chamfer-map": chamfer_map.draw,
+        "jamming": jamming.draw,
     }
 )
 
