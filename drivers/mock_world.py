@@ -1,19 +1,21 @@
 """The one world that all mocks of a cell share: where things are, and what force follows.
 
-Not modelled: the part gives way nowhere but at the rims (rigid holder), the stage follows its
-profile exactly, a round shaft does not care about its rotation about z, and the arm's place matters
-only for whether a part lies there.
+Not modelled: the part gives way nowhere but at the rims (rigid holder), a round shaft does not care
+about its rotation about z, and the arm's place matters only for whether a part lies there. What the
+arm does besides standing still is its sway.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drivers.contract.messages import Pose, Vector3, Wrench
 from drivers.mock_motion import StraightMove
+from drivers.mock_sway import Sway
 from simulator.contact import ContactLaw, Contacts, solve
 from simulator.geometry import Part, Shaft
 from simulator.initial_pose import initial_poses
@@ -39,6 +41,21 @@ class WorldSettings:
     """Where the arm starts and finds a new part; there is always one."""
 
 
+class StageMotion(Protocol):
+    """Where the stage's platform is."""
+
+    @property
+    def translation(self) -> Vector3:
+        """The commanded way [m]."""
+
+    @property
+    def end_ns(self) -> int:
+        """From when on it rests."""
+
+    def poses(self, times_ns: Sequence[int]) -> NDArray[np.float64]:
+        """Return x, y, z [m], rx, ry, rz [rad] at each time, shape (n, 6)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Truth:
     """What really goes on between shaft and part; only a mock can know it."""
@@ -60,14 +77,15 @@ class MockWorld:
         self.settings = settings
         self.generator = generator
         self._error = np.zeros(5)
-        self._stage = StraightMove.rest(0, Pose())
+        self._stage: StageMotion = StraightMove.rest(0, Pose())
         self._sliding = np.zeros(3)
         self._arm = StraightMove.rest(0, settings.tray)
+        self._sway: Sway | None = None
         self._held = False
         self._wrench_at_rest: NDArray[np.float64] | None = None
         self.version = 0
 
-    def set_stage(self, move: StraightMove) -> None:
+    def set_stage(self, move: StageMotion) -> None:
         """Take over the stage's move."""
         self._stage = move
         self._has_changed()
@@ -78,6 +96,11 @@ class MockWorld:
     def set_arm(self, move: StraightMove) -> None:
         """Take over the arm's move, which does not change the force."""
         self._arm = move
+
+    def set_sway(self, sway: Sway) -> None:
+        """Take over how the arm moves where it should stand still, and the part with it."""
+        self._sway = sway
+        self._has_changed()
 
     def pick(self, time_ns: int) -> bool:
         """Take a new part from the tray, if the arm is there; its alignment error is drawn anew."""
@@ -100,7 +123,7 @@ class MockWorld:
         """Return the true wrench on the part at each time, torque about `origin_m`: (n, 6)."""
         if not self._held:
             return np.zeros((len(times_ns), 6))
-        if times_ns[0] >= self._stage.end_ns:
+        if self._sway is None and times_ns[0] >= self._stage.end_ns:
             if self._wrench_at_rest is None:
                 self._wrench_at_rest = self._moving_wrench(times_ns[:1], origin_m)
             return np.broadcast_to(self._wrench_at_rest, (len(times_ns), 6))
@@ -134,7 +157,8 @@ class MockWorld:
         return move_torque(contacts.wrench, np.array(origin_m))
 
     def _shaft_poses(self, times_ns: Sequence[int]) -> NDArray[np.float64]:
-        return self._stage.poses(times_ns)[:, :5] + self._error
+        poses = self._stage.poses(times_ns)[:, :5] + self._error
+        return poses if self._sway is None else self._sway.seen_from_part(times_ns, poses)
 
     def _contacts(self, shaft_poses: NDArray[np.float64]) -> Contacts:
         s = self.settings

@@ -27,14 +27,13 @@ def initial_poses(
     if not np.isfinite(depth_m):
         raise ValueError(f"depth_m is {depth_m!r}; it must be finite")
     poses = np.empty((n, 5))
-    poses[:, :2] = position_error_m * _unit_disc(n, generator)
+    for columns, radius in ((slice(0, 2), position_error_m), (slice(3, 5), tilt_error_rad)):
+        poses[:, columns] = radius * unit_disc(generator.random((2, n)).T)
     poses[:, 2] = depth_m
-    poses[:, 3:] = tilt_error_rad * _unit_disc(n, generator)
     return poses
 
 
-def _unit_disc(n: int, generator: np.random.Generator) -> FloatArray:
-    """`n` points uniform in the unit disc, shape (n, 2)."""
-    radius = np.sqrt(generator.random(n))
-    angle = 2.0 * np.pi * generator.random(n)
+def unit_disc(shares: FloatArray) -> FloatArray:
+    """Points in the unit disc, shape (..., 2), uniform if both `shares` (..., 2) are in [0, 1)."""
+    radius, angle = np.sqrt(shares[..., 0]), 2.0 * np.pi * shares[..., 1]
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)

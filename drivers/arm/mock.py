@@ -1,40 +1,28 @@
 """Mock arm over the shared world: straight moves between the tray and the place of insertion.
 
-Not modelled: joints, drift, vibration, rotation.
+Drift and vibration where the settings say so. Not modelled: joints, rotation.
 """
 
 import math
-from typing import Annotated
 
-from annotated_types import Gt, Le
-from pydantic import Field
-
+from drivers.arm.mock_settings import MockArmSettings
 from drivers.contract.clock import Clock
-from drivers.contract.device_settings import TelemetrySettings
 from drivers.contract.errors import CommandRefusedError, DeviceError
 from drivers.contract.messages import ArmState, Pose
-from drivers.contract.settings import MILLI
 from drivers.mock_motion import Speeds, StraightMove
+from drivers.mock_sway import Sway
 from drivers.mock_world import MockWorld
 
 
-class MockArmSettings(TelemetrySettings):
-    """What the mock's arm is like."""
-
-    acceleration_m_s2: Annotated[float, Gt(0), Le(10_000), MILLI] = Field(
-        alias="acceleration_mm_s2"
-    )
-    """With which it starts and brakes."""
-
-
 class MockArm:
-    """Follows its profile exactly and reports its state at the telemetry rate."""
+    """Follows its profile and reports it at the telemetry rate; its encoders see no sway."""
 
     def __init__(self, settings: MockArmSettings, clock: Clock, world: MockWorld) -> None:
         self._settings = settings
         self._clock = clock
         self._world = world
         self._move = StraightMove.rest(0, world.settings.tray)
+        self._effects = settings.effects()
         self._period_ns = round(1e9 / settings.telemetry_rate_Hz)
         self._state: ArmState | None = None
         self._connected = False
@@ -43,6 +31,9 @@ class MockArm:
         """Take the place in the world."""
         self._connected = True
         self._begin(StraightMove.rest(self._clock.now_ns(), self._move.start))
+        if self._effects is not None:
+            (generator,) = self._world.generator.spawn(1)
+            self._world.set_sway(Sway(self._effects, self._clock.now_ns(), generator))
 
     def close(self) -> None:
         """Come to rest and let go of the world."""

@@ -1,11 +1,12 @@
 """Settings that every backend of a device class has; a backend adds its own by inheritance."""
 
+from collections.abc import Iterator
 from typing import Annotated
 
 from annotated_types import Ge, Gt, Le
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from drivers.contract.settings import DEGREES, MICRO, MILLI, Settings
+from drivers.contract.settings import DEGREES, MICRO, MILLI, Settings, written
 
 _Travel = Annotated[float, Gt(0), Le(100_000)]
 
@@ -15,6 +16,37 @@ class ForceSensorSettings(Settings):
 
     rate_Hz: Annotated[float, Ge(10), Le(20_000)]
     """Samples per second."""
+
+
+class DriftBand(Settings):
+    """Band in which a sensor's 1/f drift follows the law; it levels off below."""
+
+    lowest_frequency_Hz: Annotated[float, Ge(1e-6), Le(100)]
+    highest_frequency_Hz: Annotated[float, Ge(1e-6), Le(1_000)]
+
+    @model_validator(mode="after")
+    def _check(self) -> "DriftBand":
+        if self.highest_frequency_Hz <= self.lowest_frequency_Hz:
+            raise ValueError(
+                f"{self._written('highest_frequency_Hz')} is not valid: must be greater than "
+                f"{self._written('lowest_frequency_Hz')}"
+            )
+        return self
+
+    def problems(self, rate_Hz: float) -> Iterator[str]:
+        """Yield a line if the drift is too fast for a sample rate.
+
+        Its model reaches ten times beyond the band, and must stay below half the rate.
+        """
+        highest_Hz = 0.05 * rate_Hz
+        if self.highest_frequency_Hz > highest_Hz:
+            yield (
+                f"drift.{self._written('highest_frequency_Hz')} is not valid: must be at most "
+                f"{highest_Hz:.12g}, a twentieth of rate_Hz = {rate_Hz:.12g}"
+            )
+
+    def _written(self, name: str) -> str:
+        return written(type(self), name, getattr(self, name))
 
 
 class TelemetrySettings(Settings):

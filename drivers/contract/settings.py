@@ -52,7 +52,7 @@ class Scale:
 def written(settings: type[Settings], attribute: str, si_value: float | tuple[float, ...]) -> str:
     """Return `key = value` for an attribute of `settings`, in the key's unit."""
     field = settings.model_fields[attribute]
-    scale = next((m for m in field.metadata if isinstance(m, Scale)), Scale(1.0, 1.0))
+    scale = next((m for m in field.metadata if isinstance(m, Scale)), ONE)
     if isinstance(si_value, tuple):
         shown = f"[{', '.join(f'{v:.12g}' for v in scale.to_written(si_value))}]"
     else:
@@ -60,10 +60,16 @@ def written(settings: type[Settings], attribute: str, si_value: float | tuple[fl
     return f"{field.alias or attribute} = {shown}"
 
 
+ONE = Scale(1.0, 1.0)
+"""No unit, or the SI unit itself."""
+NANO = Scale(1.0, 1e9)
+"""nN m/sqrt(Hz) -> N m/sqrt(Hz)"""
 MICRO = Scale(1.0, 1e6)
 """um -> m, um/N -> m/N"""
 MILLI = Scale(1.0, 1e3)
 """mN -> N, mm/s -> m/s, ms -> s"""
+PERCENT = Scale(1.0, 100.0)
+"""% -> 1"""
 KILO = Scale(1e3, 1.0)
 """mN/um -> N/m"""
 DEGREES = Scale(math.pi, 180.0)

@@ -1,36 +1,25 @@
 """Mock stage over the shared world: trapezoidal moves that can be slowed and stopped on the way.
 
-Not modelled: backlash, hysteresis, minimum step, settling, coupling of the axes' travel.
+Minimum step, backlash, hysteresis, repeatability and settling where the settings say so. Not
+modelled: coupling of the axes' travel.
 """
 
 import math
-from typing import Annotated
-
-from annotated_types import Gt, Le
-from pydantic import Field
 
 from drivers.contract.clock import Clock
-from drivers.contract.device_settings import StageSettings
 from drivers.contract.errors import CommandRefusedError, DeviceError
 from drivers.contract.messages import Pose, StageCommand, StageState
-from drivers.contract.settings import MILLI
 from drivers.mock_motion import Speeds, StraightMove
 from drivers.mock_world import MockWorld
-
-
-class MockStageSettings(StageSettings):
-    """What the mock's stage is like."""
-
-    acceleration_m_s2: Annotated[float, Gt(0), Le(100_000), MILLI] = Field(
-        alias="acceleration_mm_s2"
-    )
-    """With which it starts and brakes."""
+from drivers.stage.imperfect import ImperfectMove
+from drivers.stage.mock_settings import MockStageSettings
 
 
 class MockStage:
-    """Follows its profile exactly and reports its state at the telemetry rate.
+    """Follows its profile and reports its state at the telemetry rate.
 
-    Linear and angular speed reach their limits in the same time.
+    Linear and angular speed reach their limits in the same time. What it reports is the profile:
+    its encoders do not see the errors of what they drive.
     """
 
     def __init__(self, settings: MockStageSettings, clock: Clock, world: MockWorld) -> None:
@@ -38,6 +27,8 @@ class MockStage:
         self._clock = clock
         self._world = world
         self._move = StraightMove.rest(0, world.settings.stage_start)
+        effects = settings.effects()
+        self._real = None if effects is None else ImperfectMove.rest(self._move, effects)
         self._period_ns = round(1e9 / settings.telemetry_rate_Hz)
         self._state: StageState | None = None
         self._connected = False
@@ -45,7 +36,7 @@ class MockStage:
     def connect(self) -> None:
         """Take the place in the world."""
         self._connected = True
-        self._begin(StraightMove.rest(self._clock.now_ns(), self._move.start))
+        self._set_out(StraightMove.rest(self._clock.now_ns(), self._move.start))
 
     def close(self) -> None:
         """Come to rest and let go of the world."""
@@ -84,7 +75,7 @@ class MockStage:
         self._check_speeds(speed_m_s, angular_speed_rad_s)
         start = self._move.pose(now_ns)
         speeds = self._speeds(speed_m_s, angular_speed_rad_s)
-        self._begin(StraightMove.between(now_ns, start, target, speeds))
+        self._set_out(StraightMove.between(now_ns, start, target, speeds))
         return StageCommand(now_ns, target, speed_m_s, angular_speed_rad_s)
 
     def slow_to(self, speed_m_s: float, angular_speed_rad_s: float) -> None:
@@ -94,19 +85,29 @@ class MockStage:
         now_ns = self._clock.now_ns()
         if self._move.is_running(now_ns):
             speeds = self._speeds(speed_m_s, angular_speed_rad_s)
-            self._begin(self._move.slowed(now_ns, speeds))
+            self._go_on(self._move.slowed(now_ns, speeds))
 
     def halt(self) -> None:
         """Brake to rest on the line of the running move."""
         self._demand_connection()
         now_ns = self._clock.now_ns()
         if self._move.is_running(now_ns) and not self._move.is_braking:
-            self._begin(self._move.braked(now_ns, self._speeds(1.0, 1.0)))
+            self._go_on(self._move.braked(now_ns, self._speeds(1.0, 1.0)))
+
+    def _set_out(self, move: StraightMove) -> None:
+        if self._real is not None:
+            self._real = self._real.then(move, self._world.generator.standard_normal(6))
+        self._begin(move)
+
+    def _go_on(self, move: StraightMove) -> None:
+        if self._real is not None:
+            self._real = self._real.going_on(move)
+        self._begin(move)
 
     def _begin(self, move: StraightMove) -> None:
         self._move = move
         self._state = None
-        self._world.set_stage(move)
+        self._world.set_stage(self._real or move)
 
     def _speeds(self, linear_m_s: float, angular_rad_s: float) -> Speeds:
         s = self._settings

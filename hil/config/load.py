@@ -8,6 +8,8 @@ from typing import Generic, TypeVar, cast
 from controllers.limits import Limits, PartLimits, tighten
 from controllers.settings import FilterSettings, ProportionalSettings, SkillSettings
 from drivers.backends import DeviceClass, settings_class
+from drivers.contract.configuration.problems import Problems
+from drivers.contract.configuration.yaml_loader import SourceFile, read_yaml
 from drivers.contract.device_settings import (
     ForceSensorSettings,
     StageSettings,
@@ -18,8 +20,6 @@ from drivers.contract.settings import Settings
 from hil.config.cell import ArmPoses, CellSettings
 from hil.config.checks import cell_problems, part_problems, rate_problems, stage_problems
 from hil.config.part import PartSettings
-from hil.config.problems import Problems
-from hil.config.yaml_loader import SourceFile, read_yaml
 
 DeviceSettings = TypeVar("DeviceSettings", bound=Settings)
 

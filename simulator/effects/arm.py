@@ -9,12 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from simulator.checks import FloatArray, positive, read_only
+from simulator.checks import FloatArray, finite_array, positive, read_only
 from simulator.effects.approach import approach
 from simulator.effects.arrays import (
     AXES,
     axis_sizes,
     axis_values,
+    demand_batch,
     none_per_axis,
     of_shape,
     sum_rows,
@@ -72,17 +73,27 @@ class ArmState:
     walk: FloatArray
     """Displacement by the random walk, shape (..., 6) [m, rad] in M."""
     modes: FloatArray
-    """State of each mode of vibration (see `VibrationMode.step`), shape (..., M, 2)."""
+    """State of each mode of vibration (see `VibrationMode.steps`), shape (..., M, 2)."""
+
+    def at(self, index: int) -> "ArmState":
+        """One of the states that `steps` returns along their first axis."""
+        return ArmState(self.thermal[index], self.walk[index], self.modes[index])
 
 
 def cold(effects: ArmEffects, draws: npt.ArrayLike) -> ArmState:
     """An arm before its drift, in full vibration; `draws` has shape (..., draws_at_start).
 
     The shape of the draws is that of the batch, also where there are no modes and its last axis is
-    0. Raises `ValueError` for draws of another shape or not finite.
+    0. Raises `ValueError` for draws of another shape or not finite, and for effects of another
+    batch.
     """
     normals = np.asarray(draws, dtype=np.float64)
     batch = normals.shape[:-1]
+    demand_batch("ArmEffects.walk_density", effects.walk_density.shape[:-1], batch)
+    for drift in effects.thermal:
+        demand_batch("ThermalDrift.end", drift.end.shape[:-1], batch)
+    for mode in effects.modes:
+        demand_batch("VibrationMode.rms", mode.rms.shape[:-1], batch)
     modes = of_shape("draws", normals, (*batch, effects.draws_at_start))
     return ArmState(
         read_only(np.zeros((*batch, len(effects.thermal), AXES))),
@@ -91,25 +102,37 @@ def cold(effects: ArmEffects, draws: npt.ArrayLike) -> ArmState:
     )
 
 
-def step(effects: ArmEffects, state: ArmState, dt_s: float, draws: npt.ArrayLike) -> ArmState:
-    """The arm `dt_s` later, exact for any time step; `draws` has shape (..., draws_per_step).
+def steps(effects: ArmEffects, state: ArmState, dt_s: float, draws: npt.ArrayLike) -> ArmState:
+    """The arm after each of T steps of `dt_s`, exact for any time step.
 
-    Raises `ValueError` for a time step that is not above zero, and for draws that are not finite or
-    not of the state's batch.
+    `draws` has shape (T, ..., draws_per_step); the first axis of the states is that of the steps
+    too. Raises `ValueError` for a time step that is not above zero, and for draws that are not
+    finite or not of the state's batch.
     """
     positive("dt_s", dt_s)
     batch = state.walk.shape[:-1]
-    normals = of_shape("draws", draws, (*batch, effects.draws_per_step))
-    thermal, modes = np.empty_like(state.thermal), np.empty_like(state.modes)
+    normals = finite_array("draws", draws, effects.draws_per_step)
+    count = len(normals)
+    if normals.shape[1:-1] != batch:
+        shape = ("T", *batch, effects.draws_per_step)
+        raise ValueError(f"draws has shape {normals.shape}; it must be {shape}")
+    elapsed_s = dt_s * np.arange(1.0, count + 1.0).reshape(count, *(1,) * (len(batch) + 1))
+    thermal = np.empty((count, *state.thermal.shape))
     for k, drift in enumerate(effects.thermal):
         thermal[..., k, :] = approach(
-            state.thermal[..., k, :], drift.end, dt_s, drift.time_constant_s
+            state.thermal[..., k, :], drift.end, elapsed_s, drift.time_constant_s
         )
-    walk = state.walk + math.sqrt(dt_s) * effects.walk_density * normals[..., :AXES]
-    kicks = normals[..., AXES:].reshape(state.modes.shape)
+    walk = np.cumsum(math.sqrt(dt_s) * effects.walk_density * normals[..., :AXES], axis=0)
+    kicks = normals[..., AXES:].reshape(count, *state.modes.shape)
+    modes = np.empty_like(kicks)
     for k, mode in enumerate(effects.modes):
-        modes[..., k, :] = mode.step(state.modes[..., k, :], dt_s, kicks[..., k, :])
-    return ArmState(read_only(thermal), read_only(walk), read_only(modes))
+        modes[..., k, :] = mode.steps(state.modes[..., k, :], dt_s, kicks[..., k, :])
+    return ArmState(read_only(thermal), read_only(state.walk + walk), read_only(modes))
+
+
+def step(effects: ArmEffects, state: ArmState, dt_s: float, draws: npt.ArrayLike) -> ArmState:
+    """The arm `dt_s` later: `steps` of one. `draws` has shape (..., draws_per_step)."""
+    return steps(effects, state, dt_s, np.asarray(draws)[np.newaxis]).at(0)
 
 
 def displacement(effects: ArmEffects, state: ArmState) -> FloatArray:

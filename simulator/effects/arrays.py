@@ -45,6 +45,15 @@ def of_shape(name: str, value: npt.ArrayLike, shape: tuple[int, ...]) -> FloatAr
     return array
 
 
+def demand_batch(name: str, own: tuple[int, ...], batch: tuple[int, ...]) -> None:
+    """Raise `ValueError` unless the leading shape of some sizes is that of a batch, or ().
+
+    Sizes of more environments than a state has would let those share its draws.
+    """
+    if own and own != batch:
+        raise ValueError(f"{name} is of a batch of shape {own}; the state's is {batch}")
+
+
 def sum_rows(terms: FloatArray) -> FloatArray:
     """Sum over the second last axis, (..., K, A) to (..., A), row after row.
 
@@ -63,5 +72,7 @@ def on_grid(value: FloatArray, step: FloatArray) -> FloatArray:
     `value` has shape (..., 6), `step` the same or one that broadcasts to it. A tie goes to the even
     multiple.
     """
+    if step.all():
+        return np.asarray(np.rint(value / step) * step)
     divisor = np.where(step > 0.0, step, 1.0)
     return np.where(step > 0.0, np.rint(value / divisor) * divisor, value)

@@ -36,15 +36,23 @@ class Ladder:
             positive(f"Ladder.corners_Hz[{index}]", corner)
         object.__setattr__(self, "rms", axis_sizes("Ladder.rms", self.rms))
 
-    def step(self, rungs: FloatArray, dt_s: float, draws: FloatArray) -> FloatArray:
-        """The rungs `dt_s` later, exact for any time step.
+    def steps(self, rungs: FloatArray, dt_s: float, draws: FloatArray) -> FloatArray:
+        """The rungs now and after each of T steps of `dt_s`, shape (1 + T, ..., R, 6).
 
-        `rungs` and `draws` have shape (..., R, 6). Rungs are scaled to unit variance: standard
-        normal draws are a state that they have when they have been running for long. The update is
-        that of D. T. Gillespie, Physical Review E 54 (1996) 2084.
+        Exact for any time step. `rungs` has shape (..., R, 6), `draws` (T, ..., R, 6). Rungs are
+        scaled to unit variance: standard normal draws are a state that they have when they have
+        been running for long. The update is that of D. T. Gillespie, Physical Review E 54 (1996)
+        2084.
         """
+        if not self.corners_Hz:
+            return np.zeros((1 + len(draws), *rungs.shape))
         exponents = -2.0 * math.pi * dt_s * np.array(self.corners_Hz)[:, np.newaxis]
-        return np.exp(exponents) * rungs + np.sqrt(-np.expm1(2.0 * exponents)) * draws
+        kept, kicks = np.exp(exponents), np.sqrt(-np.expm1(2.0 * exponents)) * draws
+        path = np.empty((1 + len(draws), *rungs.shape))
+        path[0] = rungs
+        for k, kick in enumerate(kicks):
+            path[k + 1] = kept * path[k] + kick
+        return path
 
     def drift(self, rungs: FloatArray) -> FloatArray:
         """The sum of the rungs, shape (..., R, 6), as a wrench, shape (..., 6) [N, N*m]."""

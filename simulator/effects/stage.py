@@ -12,7 +12,14 @@ import numpy.typing as npt
 
 from simulator.checks import FloatArray, finite_array, non_negative, read_only
 from simulator.effects.approach import approach
-from simulator.effects.arrays import AXES, axis_sizes, none_per_axis, of_shape, on_grid
+from simulator.effects.arrays import (
+    AXES,
+    axis_sizes,
+    demand_batch,
+    none_per_axis,
+    of_shape,
+    on_grid,
+)
 from simulator.effects.hysteresis import PrandtlIshlinskii, play
 
 
@@ -60,9 +67,16 @@ class StageState:
 def at_rest(effects: StageEffects, position: npt.ArrayLike) -> StageState:
     """A stage that stands at `position`, shape (..., 6) [m, rad], in the middle of all its gaps.
 
-    Raises `ValueError` for a wrong shape or an entry that is not finite.
+    Raises `ValueError` for a wrong shape, an entry that is not finite, and effects of another
+    batch.
     """
     place = read_only(finite_array("position", position, AXES).copy())
+    batch = place.shape[:-1]
+    for name in ("minimum_step", "backlash", "repeatability"):
+        demand_batch(f"StageEffects.{name}", getattr(effects, name).shape[:-1], batch)
+    for name in ("gaps", "weights"):
+        rows = getattr(effects.hysteresis, name)
+        demand_batch(f"PrandtlIshlinskii.{name}", rows.shape[:-2], batch)
     return StageState(place, place, read_only(effects.hysteresis.relaxed(place)))
 
 
@@ -70,15 +84,16 @@ def move(
     effects: StageEffects,
     command: npt.ArrayLike,
     state: StageState,
-    elapsed_s: float,
+    elapsed_s: float | FloatArray,
     draws: npt.ArrayLike,
 ) -> StageState:
     """The stage `elapsed_s` after it set out for `command`, shape (..., 6) [m, rad] in M.
 
-    Call it once per motion: `draws`, shape (..., 6), decide where this one ends. To look at one
-    motion at several times, start again from the same state with the same draws; an infinite time
-    gives the place that it ends at. Raises `ValueError` for a command or draws that are not finite
-    or not of the state's batch, and for a time that is negative or not a number.
+    `elapsed_s` is one time for all or has shape (..., 1). Call it once per motion: `draws`, shape
+    (..., 6), decide where this one ends. To look at one motion at several times, start again from
+    the same state with the same draws; an infinite time gives the place that it ends at. Raises
+    `ValueError` for a command or draws that are not finite or not of the state's batch, and for a
+    time that is negative or not a number.
     """
     wanted = of_shape("command", command, state.position.shape)
     normals = of_shape("draws", draws, state.position.shape)

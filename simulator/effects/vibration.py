@@ -32,14 +32,14 @@ class VibrationMode:
             )
         object.__setattr__(self, "rms", axis_values("VibrationMode.rms", self.rms))
 
-    def step(self, state: FloatArray, dt_s: float, draws: FloatArray) -> FloatArray:
-        """The state `dt_s` later, exact for any time step.
+    def steps(self, state: FloatArray, dt_s: float, draws: FloatArray) -> FloatArray:
+        """The state after each of T steps of `dt_s`, shape (T, ..., 2), exact for any time step.
 
-        `state` and `draws` have shape (..., 2). The state is q and q'/w, scaled so that both are
-        independent and of unit variance in the long run: standard normal draws are a state that the
-        mode has when it has been running for long. The exact discretisation of a linear stochastic
-        differential equation: transition F = exp(A dt), and a covariance of what the noise adds of
-        I - F F^T, here in closed form without the cancellation.
+        `state` has shape (..., 2), `draws` (T, ..., 2). The state is q and q'/w, scaled so that
+        both are independent and of unit variance in the long run: standard normal draws are a state
+        that the mode has when it has been running for long. The exact discretisation of a linear
+        stochastic differential equation: transition F = exp(A dt), and a covariance of what the
+        noise adds of I - F F^T, here in closed form without the cancellation.
         """
         zeta = self.damping_ratio
         turn = 2.0 * math.pi * self.frequency_Hz * dt_s
@@ -54,8 +54,11 @@ class VibrationMode:
         q_variance = lost - 2.0 * zeta * sine * q_from_q
         q_kick = math.sqrt(max(0.0, q_variance - shared_kick * shared_kick))
 
-        q, v = state[..., 0], state[..., 1]
-        first, second = draws[..., 0], draws[..., 1]
-        new_q = q_from_q * q + sine * v + shared_kick * first + q_kick * second
-        new_v = v_from_v * v - sine * q + v_kick * first
-        return np.stack([new_q, new_v], axis=-1)
+        kicks = np.array([q_kick, 0.0]) * draws[..., ::-1]
+        kicks += np.array([shared_kick, v_kick]) * draws[..., :1]
+        own, other = np.array([q_from_q, v_from_v]), np.array([sine, -sine])
+        path = np.empty_like(kicks)
+        for k, kick in enumerate(kicks):
+            state = own * state + other * state[..., ::-1] + kick
+            path[k] = state
+        return path

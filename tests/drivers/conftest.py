@@ -52,8 +52,8 @@ def world(make_world: Callable[[int], MockWorld]) -> MockWorld:
 SENSOR = MockForceSensorSettings.model_validate(
     {
         "rate_Hz": 1000.0,
-        "force_noise_mN": 1.0,
-        "torque_noise_uNm": 5.0,
+        "force_noise_uN_rtHz": 44.7,
+        "torque_noise_nNm_rtHz": 223.6,
         "bias_mN": (12.0, -7.0, 30.0),
         "force_resolution_mN": 0.2,
         "torque_resolution_uNm": 1.0,

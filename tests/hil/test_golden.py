@@ -51,8 +51,8 @@ def insertion() -> list[Row]:
     config = load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / "paper_simulation.yaml")
     quiet = config.force_sensor.settings.model_copy(
         update={
-            "force_noise_N": 5e-5,
-            "torque_noise_Nm": 2e-7,
+            "force_noise_N_rtHz": 2.2e-6,
+            "torque_noise_Nm_rtHz": 9e-9,
             "force_resolution_N": 1e-6,
             "torque_resolution_Nm": 1e-9,
         }

@@ -11,7 +11,6 @@ from simulator.geometry import Hole, Part, Shaft, shaft_axis, tilt_of
 from simulator.initial_pose import initial_poses
 from simulator.plant import Trapezoid, braking
 from simulator.profile import Chamfer, Rounding
-from simulator.sensor import SensorModel, measure
 from simulator.wrench import move_torque
 
 NAN, INF = float("nan"), float("inf")
@@ -115,15 +114,6 @@ CASES: list[tuple[Callable[[], object], str]] = [
     (lambda: braking(NAN, 1.0), r"start_speed_m_s is nan"),
     (lambda: Trapezoid(1.0, 0.0, 1.0, 1.0).at(-0.1), r"time_s is -0.1; it must be at least 0"),
     (lambda: Trapezoid(1.0, 0.0, 1.0, 1.0).at(NAN), r"time_s is nan; it must be at least 0"),
-    (lambda: SensorModel(noise_std=(-1.0, 0.0)), r"noise_std\[0\] is -1.0"),
-    (lambda: SensorModel(resolution=(0.0, NAN)), r"resolution\[1\] is nan"),
-    (lambda: SensorModel(range=(1.0, 0.0)), r"range is \(1.0, 0.0\); both values must be greater"),
-    (lambda: SensorModel(range=(NAN, 1.0)), r"range is \(nan, 1.0\)"),
-    (lambda: SensorModel(range=(1.0,)), r"range has 1 entries"),  # type: ignore[arg-type]
-    (lambda: SensorModel(bias=(0.0,) * 5), r"bias has shape \(5,\)"),  # type: ignore[arg-type]
-    (lambda: SensorModel(bias=(0.0, NAN, 0.0, 0.0, 0.0, 0.0)), r"bias is nan at index \(1,\)"),
-    (lambda: measure(np.zeros((2, 5)), SensorModel(), RNG), r"true_wrench has shape \(2, 5\)"),
-    (lambda: measure(np.full((1, 6), NAN), SensorModel(), RNG), r"true_wrench is nan at"),
 ]
 
 

@@ -25,6 +25,50 @@ PART_LIMITS = {
     "gentle_force_mN": 44,
     "impulse_limit_mN_s": 10,
 }
+EFFECTS: dict[str, dict[str, Any]] = {
+    "force_sensor": {
+        "latency_ms": 2,
+        "drift": {
+            "force_uN_rtHz": 100,
+            "torque_nNm_rtHz": 500,
+            "lowest_frequency_Hz": 0.001,
+            "highest_frequency_Hz": 0.4,
+        },
+        "crosstalk": {
+            "fx_percent": [0, 0.5, -1, 0, 2, 0],
+            "fy_percent": [0.5, 0, -1, -2, 0, 0],
+            "fz_percent": [1, 1, 0.3, 0, 0, 0],
+            "tx_percent": [0, 0, 0, 0, 0, 1],
+            "ty_percent": [0, 0, 0, 0, 0, 1],
+            "tz_percent": [0, 0, 0, 1, 1, 0],
+        },
+    },
+    "stage": {
+        "minimum_step_um": 0.1,
+        "minimum_step_deg": 0.0001,
+        "backlash_um": 0.5,
+        "backlash_deg": 0.0005,
+        "hysteresis_gap_um": 0.4,
+        "hysteresis_gap_deg": 0.0004,
+        "hysteresis_weight": 0.3,
+        "repeatability_um": 0.2,
+        "repeatability_deg": 0.0002,
+        "settling_time_constant_ms": 5,
+    },
+    "arm": {
+        "walk_um_rts": 0.1,
+        "walk_deg_rts": 0.0001,
+        "thermal": [
+            {"end_um": [5, -5, 1], "end_deg": [0.001, 0, 0], "time_constant_s": 600},
+            {"end_um": [1, 1, 1], "end_deg": [0, 0.001, 0], "time_constant_s": 60},
+        ],
+        "vibration": [
+            {"frequency_Hz": f, "damping_ratio": 0.02, "rms_um": [1, 1, 0], "rms_deg": [0, 0, 0]}
+            for f in (12, 31)
+        ],
+    },
+}
+"""What a mock can do besides what the shipped cell lets it do."""
 Files = dict[str, dict[str, Any]]
 
 _SHIPPED: Files = {
@@ -39,9 +83,11 @@ class Twice(dict[str, Any]):
 
 
 def shipped() -> Files:
-    """The shipped files, the part's with every limit that it may state."""
+    """The shipped files with every key that they may state."""
     files = copy.deepcopy(_SHIPPED)
     files[PART]["limits"] = copy.deepcopy(PART_LIMITS)
+    for device, keys in EFFECTS.items():
+        files[CELL][device].update(copy.deepcopy(keys))
     return files
 
 

@@ -9,6 +9,8 @@ CELL = "config/mock_cell.yaml"
 NUMBER = "a number"
 WHOLE = "a whole number"
 THREE = "a list of 3 numbers"
+SIX = "a list of 6 numbers"
+LISTS = (THREE, SIX)
 
 
 class Key(NamedTuple):
@@ -24,7 +26,7 @@ class Key(NamedTuple):
 
     @property
     def valid(self) -> str:
-        separator = ", each " if self.kind == THREE and self.range else " "
+        separator = ", each " if self.kind in LISTS and self.range else " "
         return f"{self.kind}{separator}{self.range}".rstrip()
 
 
@@ -102,16 +104,22 @@ KEYS = (
     Key(CELL, "force_sensor.backend", "text"),
     Key(CELL, "force_sensor.rate_Hz", NUMBER, "at least 10 and at most 20000", 9, 20_001, "Hz"),
     Key(
-        CELL, "force_sensor.force_noise_mN", NUMBER, "greater than 0 and at most 1000", 0, 1e4, "mN"
-    ),
-    Key(
         CELL,
-        "force_sensor.torque_noise_uNm",
+        "force_sensor.force_noise_uN_rtHz",
         NUMBER,
         "greater than 0 and at most 100000",
         0,
         1e6,
-        "uN m",
+        "uN/sqrt(Hz)",
+    ),
+    Key(
+        CELL,
+        "force_sensor.torque_noise_nNm_rtHz",
+        NUMBER,
+        "greater than 0 and at most 10000000",
+        0,
+        1e8,
+        "nN m/sqrt(Hz)",
     ),
     Key(CELL, "force_sensor.bias_mN", THREE, "at least -10000 and at most 10000", -1e5, 1e5, "mN"),
     Key(
@@ -159,6 +167,55 @@ KEYS = (
         1e7,
         "um",
     ),
+    Key(CELL, "force_sensor.latency_ms", NUMBER, "at least 0 and at most 100", -1, 101, "ms"),
+    Key(
+        CELL,
+        "force_sensor.drift.force_uN_rtHz",
+        NUMBER,
+        "at least 0 and at most 100000",
+        -1,
+        1e6,
+        "uN/sqrt(Hz)",
+    ),
+    Key(
+        CELL,
+        "force_sensor.drift.torque_nNm_rtHz",
+        NUMBER,
+        "at least 0 and at most 10000000",
+        -1,
+        1e8,
+        "nN m/sqrt(Hz)",
+    ),
+    Key(
+        CELL,
+        "force_sensor.drift.lowest_frequency_Hz",
+        NUMBER,
+        "at least 1e-06 and at most 100",
+        0,
+        101,
+        "Hz",
+    ),
+    Key(
+        CELL,
+        "force_sensor.drift.highest_frequency_Hz",
+        NUMBER,
+        "at least 1e-06 and at most 1000",
+        0,
+        1001,
+        "Hz",
+    ),
+    *(
+        Key(
+            CELL,
+            f"force_sensor.crosstalk.{axis}_percent",
+            SIX,
+            "at least -20 and at most 20",
+            -21,
+            21,
+            "%",
+        )
+        for axis in ("fx", "fy", "fz", "tx", "ty", "tz")
+    ),
     Key(CELL, "stage.backend", "text"),
     Key(CELL, "stage.speed_limit_mm_s", NUMBER, "greater than 0 and at most 5", 0, 5.1, "mm/s"),
     Key(
@@ -181,6 +238,53 @@ KEYS = (
     ),
     Key(CELL, "stage.telemetry_rate_Hz", NUMBER, "at least 1 and at most 10000", 0.9, 1e5, "Hz"),
     Key(CELL, "stage.travel_um", THREE, "greater than 0 and at most 100000", 0, 1e6, "um"),
+    *(
+        Key(CELL, f"stage.{name}_{end}", NUMBER, valid, -1, high, end)
+        for name in ("minimum_step", "backlash", "hysteresis_gap", "repeatability")
+        for end, valid, high in (
+            ("um", "at least 0 and at most 1000", 1001),
+            ("deg", "at least 0 and at most 1", 1.1),
+        )
+    ),
+    Key(CELL, "stage.hysteresis_weight", NUMBER, "at least 0 and at most 1", -0.1, 1.1),
+    Key(
+        CELL,
+        "stage.settling_time_constant_ms",
+        NUMBER,
+        "at least 0 and at most 1000",
+        -1,
+        1001,
+        "ms",
+    ),
+    Key(CELL, "arm.walk_um_rts", NUMBER, "at least 0 and at most 1000", -1, 1001, "um/sqrt(s)"),
+    Key(CELL, "arm.walk_deg_rts", NUMBER, "at least 0 and at most 1", -1, 1.1, "deg/sqrt(s)"),
+    *(
+        Key(CELL, f"arm.{name}_{end}", THREE, valid, -high, high, end)
+        for name in ("thermal[1].end", "vibration[1].rms")
+        for end, valid, high in (
+            ("um", "at least -1000 and at most 1000", 1001),
+            ("deg", "at least -1 and at most 1", 1.1),
+        )
+    ),
+    Key(
+        CELL,
+        "arm.thermal[1].time_constant_s",
+        NUMBER,
+        "greater than 0 and at most 100000",
+        0,
+        1e6,
+        "s",
+    ),
+    Key(
+        CELL,
+        "arm.vibration[1].frequency_Hz",
+        NUMBER,
+        "greater than 0 and at most 100",
+        0,
+        101,
+        "Hz",
+    ),
+    Key(CELL, "arm.vibration[1].damping_ratio", NUMBER, "greater than 0 and less than 1", 0, 1),
     Key(CELL, "arm.backend", "text"),
     Key(CELL, "arm.telemetry_rate_Hz", NUMBER, "at least 1 and at most 10000", 0.9, 1e5, "Hz"),
     Key(
@@ -252,6 +356,25 @@ GROUPS = (
         "force_limit_mN, force_rate_limit_N_s, gentle_force_mN, impulse_limit_mN_s",
     ),
     Group(CELL, "force_sensor", "a group of keys: backend"),
+    Group(
+        CELL,
+        "force_sensor.drift",
+        "a group of keys: lowest_frequency_Hz, highest_frequency_Hz, force_uN_rtHz, "
+        "torque_nNm_rtHz",
+    ),
+    Group(
+        CELL,
+        "force_sensor.crosstalk",
+        "a group of keys: fx_percent, fy_percent, fz_percent, tx_percent, ty_percent, tz_percent",
+    ),
+    Group(CELL, "arm.thermal", "a list"),
+    Group(CELL, "arm.thermal[1]", "a group of keys: end_um, end_deg, time_constant_s"),
+    Group(CELL, "arm.vibration", "a list"),
+    Group(
+        CELL,
+        "arm.vibration[1]",
+        "a group of keys: frequency_Hz, damping_ratio, rms_um, rms_deg",
+    ),
     Group(CELL, "stage", "a group of keys: backend"),
     Group(CELL, "arm", "a group of keys: backend"),
     Group(CELL, "gripper", "a group of keys: backend"),
@@ -278,6 +401,17 @@ GROUPS = (
 OPTIONAL = {
     (PART, "limits"),
     *((key.file, key.path) for key in KEYS if key.path.startswith("limits.")),
+    (CELL, "force_sensor.latency_ms"),
+    (CELL, "force_sensor.drift"),
+    (CELL, "force_sensor.crosstalk"),
+    *((CELL, key.path) for key in KEYS if key.path.startswith("stage.") and key.low == -1),
+    (CELL, "stage.hysteresis_weight"),
+    (CELL, "arm.walk_um_rts"),
+    (CELL, "arm.walk_deg_rts"),
+    (CELL, "arm.thermal"),
+    (CELL, "arm.vibration"),
+    (CELL, "arm.thermal[1].end_deg"),
+    (CELL, "arm.vibration[1].rms_deg"),
 }
 """Keys that may be left out."""
 

@@ -9,16 +9,26 @@ from hypothesis import strategies as st
 
 from drivers.contract.errors import ConfigurationError
 from hil.config import load_cell
-from tests.hil.config.cell_files import Files, Load, Refuse, Twice, parent, shipped, steps, write
+from tests.hil.config.cell_files import (
+    EFFECTS,
+    Files,
+    Load,
+    Refuse,
+    Twice,
+    parent,
+    shipped,
+    steps,
+    write,
+)
 from tests.hil.config.key_table import (
     CELL,
     GROUPS,
     KEYS,
     LIMITS,
+    LISTS,
     NUMBER,
     OPTIONAL,
     PART,
-    THREE,
     WHOLE,
     Group,
     Key,
@@ -43,8 +53,14 @@ WRONG_UNITS = {
     "N/s2": ("N_s2", "mN_s2"),
     "N m/s2": ("Nm_s2", "mNm_s2"),
     "um/N": ("um_N", "mm_N"),
+    "uN/sqrt(Hz)": ("uN_rtHz", "mN_rtHz"),
+    "nN m/sqrt(Hz)": ("nNm_rtHz", "uNm_rtHz"),
+    "%": ("percent", "ppm"),
+    "um/sqrt(s)": ("um_rts", "mm_rts"),
+    "deg/sqrt(s)": ("deg_rts", "rad_rts"),
+    "s": ("s", "ms"),
 }
-NUMERIC = [key for key in KEYS if key.kind in (NUMBER, WHOLE, THREE)]
+NUMERIC = [key for key in KEYS if key.kind in (NUMBER, WHOLE, *LISTS)]
 ONE_OF_EACH_KIND = ("speed_limit_mm_s", "force_limit_mN", "filter.tare_samples")
 
 
@@ -58,7 +74,7 @@ def every(rows: list[Any] | tuple[Any, ...]) -> pytest.MarkDecorator:
 
 def entry(key: Key) -> str:
     """Where a single number of the key stands."""
-    return f"{key.path}[1]" if key.kind == THREE else key.path
+    return f"{key.path}[1]" if key.kind in LISTS else key.path
 
 
 def spoiled(path: str, file: str, value: object) -> Files:
@@ -95,7 +111,7 @@ def test_wrong_type(row: Key, refuse: Refuse) -> None:
     ],
 )
 def test_number_in_disguise(row: Key, value: object, shown: str, hint: str, refuse: Refuse) -> None:
-    accepted = f"{row.kind if row.kind != THREE else NUMBER} {row.range}".rstrip()
+    accepted = f"{row.kind if row.kind not in LISTS else NUMBER} {row.range}".rstrip()
     assert refuse(spoiled(entry(row), row.file, value)) == (
         f"{row.file}: {entry(row)} = {shown} is not valid: must be {accepted}{hint}"
     )
@@ -132,8 +148,8 @@ def test_not_finite(row: Key, value: float, shown: str, refuse: Refuse) -> None:
     )
 
 
-@every([key for key in KEYS if key.kind == THREE])
-@pytest.mark.parametrize("value", [[], [1, 2], [1, 2, 3, 4]])
+@every([key for key in KEYS if key.kind in LISTS])
+@pytest.mark.parametrize("value", [[], [1, 1], [1, 1, 1, 1], [1, 1, 1, 1, 1, 1, 1]])
 def test_wrong_length(row: Key, value: list[int], refuse: Refuse) -> None:
     assert refuse(spoiled(row.path, row.file, value)) == (
         f"{row.file}: {row.path} = {value} is not valid: must be {row.valid}"
@@ -152,7 +168,24 @@ def test_missing(row: Key | Group, refuse: Refuse) -> None:
     assert refuse(files) == f"{row.file}: {row.path} is missing: must be {valid}{unit}"
 
 
-@every([row for row in (*KEYS, *GROUPS) if (row.file, row.path) in OPTIONAL])
+OPTIONAL_ROWS = [row for row in (*KEYS, *GROUPS) if (row.file, row.path) in OPTIONAL]
+
+
+@every([row for row in OPTIONAL_ROWS if row.file == CELL and "[" not in row.path])
+def test_what_a_mock_is_not_told_to_do_is_off(row: Key | Group, load: Load) -> None:
+    files, bare = shipped(), shipped()
+    group, last = parent(files, row.file, row.path)
+    del group[last]
+    device, *_ = row.path.split(".")
+    settings = getattr(load(files), device).settings
+    bare[CELL][device] = {k: v for k, v in group.items() if k not in EFFECTS[device]}
+    off = getattr(load(bare), device).settings
+    field = next(n for n, f in type(off).model_fields.items() if (f.alias or n) == last)
+    assert getattr(settings, field) == getattr(off, field)
+    assert not getattr(off, field)
+
+
+@every([row for row in OPTIONAL_ROWS if row.file == PART])
 def test_missing_part_limit_is_the_machines(row: Key | Group, load: Load) -> None:
     files = shipped()
     group, last = parent(files, row.file, row.path)
@@ -190,11 +223,16 @@ def test_wrong_unit(row: Key, refuse: Refuse) -> None:
 def test_no_unit(row: Key, refuse: Refuse) -> None:
     files = shipped()
     group, last = parent(files, row.file, row.path)
-    end = f"_{WRONG_UNITS[row.unit][0]}"
-    group[last.removesuffix(end)] = group.pop(last)
-    assert refuse(files) == (
-        f"{row.file}: {row.path.removesuffix(end)} is not a key: did you mean {last}? "
-        f"Its unit is {row.unit}"
+    stem = row.path.removesuffix(f"_{WRONG_UNITS[row.unit][0]}")
+    group[steps(stem)[-1]] = group.pop(last)
+    alike = [
+        str(steps(key.path)[-1])
+        for key in KEYS
+        if key.unit and key.file == row.file and key.path == f"{stem}_{WRONG_UNITS[key.unit][0]}"
+    ]
+    unit = f" Its unit is {row.unit}" if alike == [last] else ""
+    assert refuse(files).splitlines()[0] == (
+        f"{row.file}: {stem} is not a key: did you mean {' or '.join(alike)}?{unit}"
     )
 
 

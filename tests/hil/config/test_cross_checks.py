@@ -232,3 +232,25 @@ def test_tightened_limits_hold_for_part_and_cell(refuse: Refuse) -> None:
         "config/parts/paper_online.yaml: insertion.axial_step_um = 60 is not valid: "
         "must not exceed the limit step_box_um = [20, 20, 50] along z",
     ]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "expected"),
+    [
+        (
+            "drift.highest_frequency_Hz",
+            0.001,
+            "drift.highest_frequency_Hz = 0.001 is not valid: must be greater than "
+            "lowest_frequency_Hz = 0.001",
+        ),
+        (
+            "drift.highest_frequency_Hz",
+            50.1,
+            "drift.highest_frequency_Hz = 50.1 is not valid: must be at most 50, "
+            "a twentieth of rate_Hz = 1000",
+        ),
+    ],
+)
+def test_drift_that_does_not_fit(key: str, value: float, expected: str, refuse: Refuse) -> None:
+    changes = changed((CELL, f"force_sensor.{key}", value))
+    assert refuse(changes) == f"config/mock_cell.yaml: force_sensor.{expected}"

@@ -55,14 +55,17 @@ def test_devices(config: CellConfig) -> None:
     assert [device.backend for device in devices] == ["mock"] * 4
     assert config.force_sensor.settings.model_dump() == {
         "rate_Hz": 1000.0,
-        "force_noise_N": 0.001,
-        "torque_noise_Nm": 5e-6,
+        "force_noise_N_rtHz": 4.47e-5,
+        "torque_noise_Nm_rtHz": 2.236e-7,
         "bias_N": (0.012, -0.007, 0.03),
         "force_resolution_N": 2e-4,
         "torque_resolution_Nm": 1e-6,
         "force_range_N": 12.0,
         "torque_range_Nm": 0.12,
         "origin_m": (0.0, 0.0, 0.04),
+        "latency_s": 0.0,
+        "drift": None,
+        "crosstalk": None,
     }
     assert config.stage.settings.model_dump() == {
         "speed_m_s": 0.005,
@@ -70,10 +73,24 @@ def test_devices(config: CellConfig) -> None:
         "acceleration_m_s2": 1.0,
         "telemetry_rate_Hz": 500.0,
         "travel_m": (5e-4, 5e-4, 4e-3),
+        "minimum_step_m": 0.0,
+        "minimum_step_rad": 0.0,
+        "backlash_m": 0.0,
+        "backlash_rad": 0.0,
+        "hysteresis_gap_m": 0.0,
+        "hysteresis_gap_rad": 0.0,
+        "hysteresis_weight": 0.0,
+        "repeatability_m": 0.0,
+        "repeatability_rad": 0.0,
+        "settling_time_constant_s": 0.0,
     }
     assert config.arm.settings.model_dump() == {
         "telemetry_rate_Hz": 125.0,
         "acceleration_m_s2": 0.5,
+        "walk_m_rts": 0.0,
+        "walk_rad_rts": 0.0,
+        "thermal": (),
+        "vibration": (),
     }
     assert config.gripper.settings.model_dump() == {
         "telemetry_rate_Hz": 125.0,

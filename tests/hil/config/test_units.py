@@ -7,14 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controllers.limits import Limits
-from drivers.contract.settings import DEGREES, KILO, MICRO, MILLI, Scale, written
+from drivers.contract.settings import DEGREES, KILO, MICRO, MILLI, NANO, PERCENT, Scale, written
 
 
 @pytest.mark.parametrize(
     ("scale", "value", "si"),
     [
+        (NANO, 223.6, 2.236e-7),
         (MICRO, 35.0, 3.5e-5),
         (MILLI, 44.0, 0.044),
+        (PERCENT, 25.0, 0.25),
         (KILO, 16.0, 16_000.0),
         (DEGREES, 180.0, math.pi),
     ],
@@ -26,7 +28,7 @@ def test_to_si_is_exact(scale: Scale, value: float, si: float) -> None:
     assert scale.to_written((si, 0.0)) == (value, 0.0)
 
 
-@given(st.sampled_from([MICRO, MILLI, KILO, DEGREES]), st.floats(-1e9, 1e9))
+@given(st.sampled_from([NANO, MICRO, MILLI, PERCENT, KILO, DEGREES]), st.floats(-1e9, 1e9))
 def test_there_and_back(scale: Scale, value: float) -> None:
     assert scale.to_written(scale.to_si(value)) == pytest.approx(value, rel=1e-15, abs=1e-300)
 

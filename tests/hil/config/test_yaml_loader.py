@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from drivers.contract.configuration.yaml_loader import read_yaml
 from drivers.contract.errors import ConfigurationError
 from hil.config import load_cell
-from hil.config.yaml_loader import read_yaml
 
 KEY = "a key must be a name of letters, digits, '_' and '-'"
 

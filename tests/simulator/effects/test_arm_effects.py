@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from scipy.signal import welch
 
 from simulator.checks import FloatArray
-from simulator.effects.arm import ArmEffects, ThermalDrift, cold, displacement, step
+from simulator.effects.arm import ArmEffects, ThermalDrift, cold, displacement, step, steps
 from simulator.effects.vibration import VibrationMode
 
 ONES = np.ones(6)
@@ -36,7 +36,7 @@ def test_draws_push_the_arm_their_own_way_and_all_displacements_add() -> None:
     np.testing.assert_array_equal(displacement(effects, start), DIRECTION)
     draws = np.array([1.0, 2.0, 3.0, -1.0, -2.0, -3.0, 0.5, -0.5])
     later = step(effects, start, 4.0, draws)
-    swing = mode.step(np.array([1.0, 0.0]), 4.0, draws[6:])[0]
+    swing = mode.steps(np.array([1.0, 0.0]), 4.0, draws[np.newaxis, 6:])[0, 0]
     expected = 2e-6 * draws[:6] + drift.end + swing * DIRECTION
     np.testing.assert_allclose(displacement(effects, later), expected, rtol=1e-12, atol=1e-20)
     again = step(effects, later, 1.0, np.zeros(8))
@@ -82,8 +82,8 @@ def test_a_mode_is_discretised_exactly(frequency: float, damping: float, dt_s: f
     mode = VibrationMode(frequency, damping, ONES)
     omega = 2.0 * np.pi * frequency
     flow = omega * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]])
-    transition = mode.step(np.eye(2), dt_s, np.zeros((2, 2))).T
-    kick = mode.step(np.zeros((2, 2)), dt_s, np.eye(2)).T
+    transition = mode.steps(np.eye(2), dt_s, np.zeros((1, 2, 2)))[0].T
+    kick = mode.steps(np.zeros((2, 2)), dt_s, np.eye(2)[np.newaxis])[0].T
     np.testing.assert_allclose(transition, expm(flow * dt_s), atol=1e-9)
     np.testing.assert_allclose(kick @ kick.T, np.eye(2) - transition @ transition.T, atol=1e-14)
 
@@ -92,12 +92,12 @@ def test_a_very_short_step_keeps_the_small_kick() -> None:
     """To first order the noise adds 4 zeta a to v, and 4/3 zeta a^3 to q, a the angle turned."""
     angle, damping = 1e-4, 0.02
     mode = VibrationMode(10.0, damping, ONES)
-    kick = mode.step(np.zeros((2, 2)), angle / (20.0 * np.pi), np.eye(2)).T
+    kick = mode.steps(np.zeros((2, 2)), angle / (20.0 * np.pi), np.eye(2)[np.newaxis])[0].T
     added = kick @ kick.T
     assert added[0, 0] == pytest.approx(4.0 / 3.0 * damping * angle**3, rel=1e-4)
     assert added[0, 1] == pytest.approx(2.0 * damping * angle**2, rel=1e-4)
     assert added[1, 1] == pytest.approx(4.0 * damping * angle, rel=1e-4)
-    assert np.isfinite(mode.step(np.ones(2), 1e-15, np.ones(2))).all()
+    assert np.isfinite(mode.steps(np.ones(2), 1e-15, np.ones((1, 2)))).all()
 
 
 @pytest.mark.parametrize("steps", [0, 1, 40])
@@ -151,3 +151,18 @@ def test_two_modes_resonate_each_at_its_own_frequency() -> None:
     assert frequency[low][power[low].argmax()] == pytest.approx(9.0, abs=0.25)
     assert frequency[high][power[high].argmax()] == pytest.approx(31.0, abs=0.25)
     assert power.sum() * frequency[1] == pytest.approx(2.0, rel=0.1)
+
+
+def test_many_steps_at_once_are_those_steps_one_by_one() -> None:
+    effects = ArmEffects(
+        (ThermalDrift(3.0, DIRECTION), ThermalDrift(0.1, 2.0 * DIRECTION)),
+        1e-6 * ONES,
+        (VibrationMode(12.0, 0.05, DIRECTION), VibrationMode(31.0, 0.01, 1e-6 * ONES)),
+    )
+    generator = np.random.default_rng(5)
+    state = cold(effects, generator.standard_normal((3, effects.draws_at_start)))
+    draws = generator.standard_normal((20, 3, effects.draws_per_step))
+    path = displacement(effects, steps(effects, state, 0.02, draws))
+    for k in range(20):
+        state = step(effects, state, 0.02, draws[k])
+        np.testing.assert_allclose(path[k], displacement(effects, state), atol=1e-18)

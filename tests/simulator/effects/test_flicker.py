@@ -53,7 +53,7 @@ def test_simulated_drift_has_the_spectrum_of_its_formula() -> None:
     rungs = generator.standard_normal((n, len(ladder.corners_Hz), 6))
     record = np.empty((samples, n, 6))
     for k in range(samples):
-        rungs = ladder.step(rungs, 1.0 / rate_Hz, generator.standard_normal(rungs.shape))
+        rungs = ladder.steps(rungs, 1.0 / rate_Hz, generator.standard_normal((1, *rungs.shape)))[1]
         record[k] = ladder.drift(rungs)
     frequency, spectra = welch(record, rate_Hz, nperseg=2048, axis=0)
     power = spectra.mean(axis=(1, 2))
@@ -68,7 +68,8 @@ def test_simulated_drift_has_the_spectrum_of_its_formula() -> None:
 def test_a_step_keeps_the_variance_and_decays_by_the_corner(dt_s: float) -> None:
     ladder = Ladder((0.01, 0.1, 3.0), ONES)
     ones, none = np.ones((3, 6)), np.zeros((3, 6))
-    keep, kick = ladder.step(ones, dt_s, none), ladder.step(none, dt_s, ones)
+    keep = ladder.steps(ones, dt_s, none[np.newaxis])[1]
+    kick = ladder.steps(none, dt_s, ones[np.newaxis])[1]
     np.testing.assert_allclose(keep**2 + kick**2, 1.0, rtol=1e-12)
     expected = [math.exp(-2.0 * math.pi * corner * dt_s) for corner in (0.01, 0.1, 3.0)]
     np.testing.assert_allclose(keep[:, 0], expected, rtol=1e-12)

@@ -81,7 +81,10 @@ CASES: list[tuple[Callable[[], object], str]] = [
     (lambda: VibrationMode(10.0, 0.1, np.ones(3)), r"VibrationMode.rms has shape \(3,\)"),
     (lambda: arm.cold(ARM, np.zeros(2)), r"draws has shape \(2,\); it must be \(..., 0\)"),
     (lambda: arm.step(ARM, COLD, 0.0, ZEROS), r"dt_s is 0.0; it must be finite and greater"),
-    (lambda: arm.step(ARM, COLD, 1.0, ROWS), r"draws has shape \(2, 6\); it must be \(6,\)"),
+    (
+        lambda: arm.step(ARM, COLD, 1.0, ROWS),
+        r"draws has shape \(1, 2, 6\); it must be \('T', 6\)",
+    ),
     (lambda: sensor.SensorEffects(0.0), r"SensorEffects.sample_rate_Hz is 0.0"),
     (
         lambda: sensor.SensorEffects(1.0, crosstalk=ONES),
@@ -112,8 +115,47 @@ CASES: list[tuple[Callable[[], object], str]] = [
     (lambda: flicker(BELOW, (1.0, 2.0)), r"density_at_1_Hz is -1.0 at index \(2,\)"),
     (lambda: sensor.warmed_up(SENSOR, BROKEN, np.zeros(0)), r"load is nan at index \(1,\)"),
     (lambda: sensor.warmed_up(SENSOR, ZEROS, ZEROS), r"draws has shape \(6,\)"),
-    (lambda: sensor.sample(SENSOR, ROWS, WARM, ZEROS), r"load has shape \(2, 6\); it must be"),
-    (lambda: sensor.sample(SENSOR, ZEROS, WARM, BROKEN), r"draws is nan at index \(1,\)"),
+    (
+        lambda: sensor.sample(SENSOR, ROWS, WARM, ZEROS),
+        r"loads has shape \(1, 2, 6\); it must be \('T', 6\)",
+    ),
+    (
+        lambda: sensor.warmed_up(sensor.SensorEffects(1.0, bias=ROWS), ZEROS, np.zeros(0)),
+        r"SensorEffects.bias is of a batch of shape \(2,\); the state's is \(\)",
+    ),
+    (
+        lambda: sensor.warmed_up(sensor.SensorEffects(1.0, np.ones((3, 6, 6))), ROWS, ROWS[:, :0]),
+        r"SensorEffects.crosstalk is of a batch of shape \(3,\); the state's is \(2,\)",
+    ),
+    (
+        lambda: sensor.warmed_up(
+            sensor.SensorEffects(9.0, drift=Ladder((1.0,), ROWS)), ZEROS, ZEROS
+        ),
+        r"Ladder.rms is of a batch of shape \(2,\)",
+    ),
+    (
+        lambda: stage.at_rest(stage.StageEffects(backlash=ROWS), ZEROS),
+        r"StageEffects.backlash is of a batch of shape \(2,\); the state's is \(\)",
+    ),
+    (
+        lambda: stage.at_rest(
+            stage.StageEffects(hysteresis=PrandtlIshlinskii(ROWS[np.newaxis], ROWS * 0.1)), ZEROS
+        ),
+        r"PrandtlIshlinskii.gaps is of a batch of shape \(1,\)",
+    ),
+    (
+        lambda: arm.cold(arm.ArmEffects(walk_density=ROWS), np.zeros(0)),
+        r"ArmEffects.walk_density is of a batch of shape \(2,\)",
+    ),
+    (
+        lambda: arm.cold(arm.ArmEffects((arm.ThermalDrift(1.0, ROWS),)), np.zeros(0)),
+        r"ThermalDrift.end is of a batch of shape \(2,\)",
+    ),
+    (
+        lambda: arm.cold(arm.ArmEffects(modes=(VibrationMode(1.0, 0.1, ROWS),)), np.zeros(2)),
+        r"VibrationMode.rms is of a batch of shape \(2,\)",
+    ),
+    (lambda: sensor.sample(SENSOR, ZEROS, WARM, BROKEN), r"draws is nan at index \(0, 1\)"),
     (lambda: standard_normals([], -1), r"count is -1; it must be at least 0"),
 ]
 

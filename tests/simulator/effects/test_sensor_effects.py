@@ -10,8 +10,8 @@ from scipy.signal import welch
 
 from simulator.checks import FloatArray
 from simulator.effects.flicker import Ladder, flicker
-from simulator.effects.latency import delayed, full_of
-from simulator.effects.sensor import SensorEffects, sample, warmed_up
+from simulator.effects.latency import delayed, full_of, left_over, queued
+from simulator.effects.sensor import SensorEffects, record, sample, warmed_up
 
 ONES = np.ones(6)
 LOAD = np.array([0.02, -0.03, 0.4, 1e-5, -2e-5, 3e-6])
@@ -137,24 +137,66 @@ def test_a_warmed_up_sensor_has_readings_of_its_load_on_their_way() -> None:
     assert saturated.tolist() == [False, False, True, False, False, False]
 
 
-@given(st.floats(0.0, 9.0))
-def test_a_ramp_is_read_late_by_the_latency(latency: float) -> None:
-    past = full_of(np.zeros(1), latency)
-    for k in range(20):
-        late, past = delayed(np.array([float(k)]), past, latency)
-        if k >= math.ceil(latency):
-            assert float(late[0]) == pytest.approx(k - latency, abs=1e-12)
-    assert past.shape == (math.ceil(latency), 1)
-
-
-@given(st.integers(0, 8), st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=20))
-def test_a_whole_latency_only_shifts(latency: int, values: list[float]) -> None:
-    past = full_of(np.array([0.5]), float(latency))
+def late_by(latency: float, values: list[float], blocks: int = 1) -> FloatArray:
+    """What is read of the values, made in a number of blocks, by a source that was at 0.5."""
+    past = full_of(np.array([0.5]), latency)
     read = []
-    for value in values:
-        late, past = delayed(np.array([value]), past, float(latency))
-        read.append(float(late[0]))
-    assert read == ([0.5] * latency + values)[: len(values)]
+    for block in np.array_split(np.array(values)[:, np.newaxis], blocks):
+        queue = queued(block, past)
+        read.append(delayed(queue, latency))
+        past = left_over(queue, len(block), latency)
+        assert past.shape == (math.ceil(latency), 1)
+    return np.concatenate(read)[:, 0]
+
+
+@given(st.floats(0.0, 9.0), st.integers(1, 20))
+def test_a_ramp_is_read_late_by_the_latency(latency: float, blocks: int) -> None:
+    late = late_by(latency, [float(k) for k in range(20)], blocks)
+    full = math.ceil(latency)
+    np.testing.assert_allclose(late[full:], np.arange(full, 20) - latency, atol=1e-12)
+
+
+@given(
+    st.integers(0, 8), st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=20), st.integers(1, 5)
+)
+def test_a_whole_latency_only_shifts(latency: int, values: list[float], blocks: int) -> None:
+    read = late_by(float(latency), values, blocks)
+    assert read.tolist() == ([0.5] * latency + values)[: len(values)]
+
+
+def full_effects() -> SensorEffects:
+    """Every effect on."""
+    return SensorEffects(
+        1000.0,
+        np.eye(6) + 0.01,
+        BIAS,
+        flicker(1e-3 * ONES, (0.1, 10.0)),
+        1e-3 * ONES,
+        0.4 * ONES,
+        1e-4 * ONES,
+        2.3,
+    )
+
+
+@given(st.integers(0, 12))
+def test_a_block_may_be_broken_off_after_any_sample(count: int) -> None:
+    """What comes after it is what one sample at a time gives, to the last bit."""
+    effects = full_effects()
+    generator = np.random.default_rng(3)
+    state = warmed_up(effects, LOAD, generator.standard_normal(effects.draws_at_start))
+    loads = LOAD + 1e-2 * generator.standard_normal((12, 6))
+    draws = generator.standard_normal((12, effects.draws_per_sample))
+    block = record(effects, loads[:count], state, draws[:count]) if count else None
+    whole = record(effects, loads, state, draws)
+    going_on = state if block is None else block.after(count)
+    rest = record(effects, loads[count:], whole.after(count), draws[count:])
+    for k in range(count, 12):
+        reading, saturated, going_on = sample(effects, loads[k], going_on, draws[k])
+        np.testing.assert_array_equal(reading, whole.readings[k])
+        np.testing.assert_array_equal(reading, rest.readings[k - count])
+        np.testing.assert_array_equal(saturated, whole.saturated[k])
+    assert whole.saturated.any()
+    assert not whole.saturated.all()
 
 
 @given(st.floats(-3.0, 3.0), st.floats(0.01, 2.0), st.integers(1, 50))

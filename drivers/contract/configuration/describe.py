@@ -5,13 +5,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from annotated_types import Ge, Gt, Le, Lt, MaxLen
+from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 
 from drivers.contract.settings import Settings
 
 _NOUNS = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}
 
 _UNITS = {
+    "nNm_rtHz": "nN m/sqrt(Hz)",
+    "uN_rtHz": "uN/sqrt(Hz)",
+    "um_rts": "um/sqrt(s)",
+    "deg_rts": "deg/sqrt(s)",
     "N_s2": "N/s2",
     "Nm_s2": "N m/s2",
     "N_s": "N/s",
@@ -26,7 +30,9 @@ _UNITS = {
     "um": "um",
     "deg": "deg",
     "ms": "ms",
+    "percent": "%",
     "Hz": "Hz",
+    "s": "s",
 }
 """Ends of keys and the units that they stand for; of two that fit, the longer one counts."""
 
@@ -91,7 +97,8 @@ class Accepted:
         """Type and range in words."""
         origin, arguments = get_origin(self.annotation), get_args(self.annotation)
         if origin is tuple and arguments[-1] is Ellipsis:
-            return "a list with at least one entry"
+            is_demanded = any(isinstance(c, MinLen) for c in self.constraints)
+            return "a list with at least one entry" if is_demanded else "a list"
         if origin is tuple:
             bounds = Accepted.of(arguments[0]).range
             return f"a list of {len(arguments)} numbers{f', each {bounds}' if bounds else ''}"

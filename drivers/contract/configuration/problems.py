@@ -11,21 +11,23 @@ from typing import TypeVar
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from drivers.contract.configuration.describe import Accepted, keys, unit_of
 from drivers.contract.errors import ConfigurationError
 from drivers.contract.settings import Settings
-from hil.config.describe import Accepted, keys, unit_of
 
 Place = tuple[str | int, ...]
 """Keys and list indices that lead to a value."""
 AnySettings = TypeVar("AnySettings", bound=Settings)
 
+INVALID = "invalid"
+"""Type of a `PydanticCustomError` whose message is what a key accepts."""
 _LONGEST = 60
 _OUT_OF_RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 _NUMBER = r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
 
 
 class Problems:
-    """Collects the problems of a cell's files, so that all are reported at once."""
+    """Collects the problems of several files, so that all are reported at once."""
 
     def __init__(self) -> None:
         self._lines: list[str] = []
@@ -73,7 +75,8 @@ def _lines(root: Accepted, errors: Iterable[ErrorDetails], group: Place) -> list
 def _line(root: Accepted, error: ErrorDetails, group: Place) -> str:
     kind, loc, value = error["type"], error["loc"], error["input"]
     if kind == "value_error":
-        return str(error["ctx"]["error"])
+        inside = f"{place}." if (place := _path(group, loc)) else ""
+        return "\n".join(f"{inside}{line}" for line in str(error["ctx"]["error"]).splitlines())
     if kind == "missing":
         parent = _accepted(root, loc[:-1])
         if parent.is_list:
@@ -82,6 +85,8 @@ def _line(root: Accepted, error: ErrorDetails, group: Place) -> str:
         unit = f", in {unit}" if unit else ""
         valid = parent.inside(loc[-1]).description
         return f"{_path(group, loc)} is missing: must be {valid}{unit}"
+    if kind == INVALID:
+        return _invalid(_path(group, loc), value, error["msg"])
     accepted = _accepted(root, loc)
     valid = accepted.description
     if kind in _OUT_OF_RANGE:
@@ -136,11 +141,18 @@ def _hint(accepted: Accepted, value: object) -> str:
 def _correction(group: Accepted, key: str) -> tuple[str, str]:
     """Return the key that was probably meant, and what to tell."""
     valid = keys(group.model) if group.model else []
-    for candidate in sorted(valid, key=len, reverse=True):
-        end, unit = unit_of(candidate)
-        stem = candidate.removesuffix(end)
-        if end and f"{key}_".startswith(stem):
-            return candidate, f"did you mean {candidate}? Its unit is {unit}"
+    with_unit = [k for k in valid if unit_of(k)[0] and f"{key}_".startswith(_stem(k))]
+    if with_unit:
+        longest = max(len(_stem(k)) for k in with_unit)
+        alike = [k for k in with_unit if len(_stem(k)) == longest]
+        if len(alike) > 1 and len(key) < longest:
+            return alike[0], f"did you mean {' or '.join(alike)}?"
+        (candidate,) = get_close_matches(key, alike, n=1, cutoff=0.0)
+        return candidate, f"did you mean {candidate}? Its unit is {unit_of(candidate)[1]}"
     for candidate in get_close_matches(key, valid, n=1):
         return candidate, f"did you mean {candidate}?"
     return "", f"valid keys are {', '.join(valid)}"
+
+
+def _stem(key: str) -> str:
+    return key.removesuffix(unit_of(key)[0])

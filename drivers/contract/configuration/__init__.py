@@ -1,0 +1,1 @@
+"""Configuration files: read strictly, validated, and refused in lines that people understand."""

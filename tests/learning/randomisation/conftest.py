@@ -1,0 +1,3 @@
+from tests.learning.randomisation.plant_files import load, refuse
+
+__all__ = ["load", "refuse"]
