@@ -30,6 +30,7 @@ fuzz: $(READY)  ## the property tests with new examples, other ones each time
 
 bench: $(READY)  ## speed, measured side by side on this machine
 	$(BIN)/python benchmarks/contact_solves.py
+	$(BIN)/python benchmarks/engine.py
 	$(BIN)/python benchmarks/simulated_time.py
 	$(BIN)/python benchmarks/real_time.py
 
