@@ -61,13 +61,13 @@ def written(settings: type[Settings], attribute: str, si_value: float | tuple[fl
 
 
 ONE = Scale(1.0, 1.0)
-"""No unit, or the SI unit itself."""
+"""No unit, the SI unit itself, or urad/(uN m) -> rad/(N m)"""
 NANO = Scale(1.0, 1e9)
 """nN m/sqrt(Hz) -> N m/sqrt(Hz)"""
 MICRO = Scale(1.0, 1e6)
 """um -> m, um/N -> m/N"""
 MILLI = Scale(1.0, 1e3)
-"""mN -> N, mm/s -> m/s, ms -> s"""
+"""mN -> N, mm/s -> m/s, ms -> s, um/mN -> m/N"""
 PERCENT = Scale(1.0, 100.0)
 """% -> 1"""
 KILO = Scale(1e3, 1.0)

@@ -9,33 +9,18 @@ from pydantic import Field, model_validator
 from drivers.contract.configuration.describe import Accepted
 from drivers.contract.settings import DEGREES, KILO, MICRO, ONE, Settings
 from learning.randomisation.distribution import OFF, DistributionSettings, Spread
+from learning.randomisation.geometry import (
+    Clearance,
+    HoleDistributionSettings,
+    ShaftDistributionSettings,
+)
+from learning.randomisation.holder import HolderDistributionSettings
 from learning.randomisation.rig import (
     ArmDistributionSettings,
     SensorDistributionSettings,
     StageDistributionSettings,
 )
-from simulator.randomisation.plants import HoleDistribution, PlantDistribution
-
-_Size = Annotated[DistributionSettings, Spread(Gt(0), Le(100_000), MICRO)]
-
-
-class ShaftDistributionSettings(Settings):
-    """The shaft, a straight cylinder."""
-
-    diameter_m: _Size = Field(alias="diameter_um")
-    length_m: _Size = Field(alias="length_um")
-
-
-class HoleDistributionSettings(Settings):
-    """A hole through one wall."""
-
-    clearance_m: Annotated[DistributionSettings, Spread(Ge(-100), Le(1_000), MICRO)] = Field(
-        alias="clearance_um"
-    )
-    """The hole's diameter less the shaft's; below 0 for interference."""
-    thickness_m: _Size = Field(alias="thickness_um")
-    gap_m: _Size | None = Field(None, alias="gap_um")
-    """Free space after the hole before; none before the first."""
+from simulator.randomisation.plants import STIFFNESS_RATIO, PlantDistribution
 
 
 class ContactDistributionSettings(Settings):
@@ -45,6 +30,10 @@ class ContactDistributionSettings(Settings):
         alias="stiffness_mN_um"
     )
     friction: Annotated[DistributionSettings, Spread(Ge(0), Le(2), ONE)]
+    tangential_stiffness_ratio: Annotated[DistributionSettings, Spread(Gt(0), Le(2), ONE)] = (
+        DistributionSettings(constant=STIFFNESS_RATIO.value)
+    )
+    """Of a contact that sticks, over its normal stiffness."""
 
 
 class AlignmentDistributionSettings(Settings):
@@ -63,12 +52,15 @@ class PlantSettings(Settings):
 
     contact: ContactDistributionSettings
     shaft: ShaftDistributionSettings
+    common_clearance_m: Clearance = Field(OFF, alias="common_clearance_um")
+    """Of all holes of a part; each hole's own clearance is added to it."""
     holes: Annotated[tuple[HoleDistributionSettings, ...], MinLen(1)]
     """From the one entered first."""
     alignment: AlignmentDistributionSettings
     force_sensor: SensorDistributionSettings
     stage: StageDistributionSettings = StageDistributionSettings()
     arm: ArmDistributionSettings = ArmDistributionSettings()
+    holder: HolderDistributionSettings = HolderDistributionSettings()
 
     @model_validator(mode="after")
     def _check(self) -> "PlantSettings":
@@ -79,16 +71,16 @@ class PlantSettings(Settings):
     def _problems(self) -> Iterator[str]:
         if self.holes[0].gap_m is not None:
             yield "holes[0].gap_um is not a key: there is no hole before the first"
-        thinnest_m, _ = self.shaft.diameter_m.ends
+        least_m = self.shaft.diameter_m.ends[0] + self.common_clearance_m.ends[0]
         for number, hole in enumerate(self.holes):
             if number > 0 and hole.gap_m is None:
                 valid = Accepted.of(DistributionSettings).description
                 yield f"holes[{number}].gap_um is missing: must be {valid}, in um"
             tightest_m, _ = hole.clearance_m.ends
-            if thinnest_m + tightest_m <= 0.0:
+            if least_m + tightest_m <= 0.0:
                 yield (
                     f"holes[{number}].clearance_um reaches {tightest_m * 1e6:.12g}: must be above "
-                    f"{-thinnest_m * 1e6:.12g} throughout, where the thinnest shaft has no hole"
+                    f"{-least_m * 1e6:.12g} throughout, where the thinnest shaft has no hole"
                 )
 
     def distribution(self) -> PlantDistribution:
@@ -96,20 +88,15 @@ class PlantSettings(Settings):
         return PlantDistribution(
             stiffness_N_m=self.contact.stiffness_N_m.distribution(),
             friction=self.contact.friction.distribution(),
-            shaft_diameter_m=self.shaft.diameter_m.distribution(),
-            shaft_length_m=self.shaft.length_m.distribution(),
-            holes=tuple(
-                HoleDistribution(
-                    hole.clearance_m.distribution(),
-                    hole.thickness_m.distribution(),
-                    (hole.gap_m or OFF).distribution(),
-                )
-                for hole in self.holes
-            ),
+            shaft=self.shaft.distribution(),
+            holes=tuple(hole.distribution() for hole in self.holes),
             position_error_m=self.alignment.position_error_m.distribution(),
             tilt_error_rad=self.alignment.tilt_error_rad.distribution(),
             sensor=self.force_sensor.distribution(),
             stage=self.stage.distribution(),
             arm=self.arm.distribution(),
+            holder=self.holder.distribution(),
             position_noise_m=self.stage.position_noise_m.distribution(),
+            common_clearance_m=self.common_clearance_m.distribution(),
+            stiffness_ratio=self.contact.tangential_stiffness_ratio.distribution(),
         )

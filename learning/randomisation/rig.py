@@ -4,13 +4,15 @@ What is left out is off. Each of the three axes is drawn on its own; rates, time
 are plain numbers, the same for all plants.
 """
 
+import math
+from collections.abc import Iterator
 from typing import Annotated
 
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import Field, model_validator
 
 from drivers.contract.device_settings import DriftBand, ForceSensorSettings
-from drivers.contract.settings import DEGREES, MICRO, MILLI, NANO, ONE, Settings
+from drivers.contract.settings import DEGREES, MICRO, MILLI, NANO, ONE, PERCENT, Settings
 from learning.randomisation.distribution import OFF, DistributionSettings, Spread
 from simulator.randomisation.rig import (
     ArmDistribution,
@@ -56,13 +58,43 @@ class SensorDistributionSettings(ForceSensorSettings):
         DistributionSettings, Spread(Ge(-1_000_000), Le(1_000_000), MICRO)
     ] = Field(OFF, alias="torque_bias_uNm")
     latency_s: Annotated[float, Ge(0), Le(100), MILLI] = Field(0.0, alias="latency_ms")
+    force_resolution_N: Annotated[float, Ge(0), Le(1_000), MILLI] = Field(
+        0.0, alias="force_resolution_mN"
+    )
+    torque_resolution_Nm: Annotated[float, Ge(0), Le(100_000), MICRO] = Field(
+        0.0, alias="torque_resolution_uNm"
+    )
+    force_range_N: Annotated[float, Gt(0), Le(1_000_000), MILLI] | None = Field(
+        None, alias="force_range_mN"
+    )
+    """Largest force, to either side, before an axis saturates; without it none does."""
+    torque_range_Nm: Annotated[float, Gt(0), Le(100_000_000), MICRO] | None = Field(
+        None, alias="torque_range_uNm"
+    )
+    """Largest torque, to either side, before an axis saturates; without it none does."""
+    crosstalk: Annotated[DistributionSettings, Spread(Ge(-20), Le(20), PERCENT)] = Field(
+        OFF, alias="crosstalk_percent"
+    )
+    """What an axis reads, as a share of its range, of a full load on another. On itself: the error
+    of its gain."""
     drift: DriftDistributionSettings | None = None
 
     @model_validator(mode="after")
     def _check(self) -> "SensorDistributionSettings":
-        if self.drift is not None and (problems := [*self.drift.problems(self.rate_Hz)]):
+        if problems := [*self._problems()]:
             raise ValueError("\n".join(problems))
         return self
+
+    def _problems(self) -> Iterator[str]:
+        if "crosstalk" in self.model_fields_set:
+            for key, end in (
+                ("force_range_mN", self.force_range_N),
+                ("torque_range_uNm", self.torque_range_Nm),
+            ):
+                if end is None:
+                    yield f"{key} is missing: crosstalk_percent is a share of it"
+        if self.drift is not None:
+            yield from self.drift.problems(self.rate_Hz)
 
     def distribution(self) -> SensorDistribution:
         """Return the sensor as the simulator takes it."""
@@ -72,6 +104,9 @@ class SensorDistributionSettings(ForceSensorSettings):
             bias=_axes(self.force_bias_N, self.torque_bias_Nm),
             drift=None if self.drift is None else self.drift.distribution(),
             latency_s=self.latency_s,
+            crosstalk=self.crosstalk.distribution(),
+            range=(self.force_range_N or math.inf, self.torque_range_Nm or math.inf),
+            resolution=(self.force_resolution_N, self.torque_resolution_Nm),
         )
 
 

@@ -9,6 +9,9 @@ from scipy.special import ndtr, ndtri
 
 from simulator.checks import FloatArray, positive
 
+Generators = Sequence[np.random.Generator]
+"""One per environment."""
+
 
 @dataclass(frozen=True, slots=True)
 class Constant:
@@ -108,9 +111,7 @@ class Choice:
 Distribution = Constant | Uniform | LogUniform | TruncatedNormal | Choice
 
 
-def drawn(
-    distribution: Distribution, count: int, generators: Sequence[np.random.Generator]
-) -> FloatArray:
+def drawn(distribution: Distribution, count: int, generators: Generators) -> FloatArray:
     """`count` independent draws for each environment, shape (n, count).
 
     Row i takes `count` uniform numbers from generator i alone, whatever the distribution.

@@ -3,21 +3,20 @@
 Each of the three axes of a force, a torque, a translation or a rotation is drawn on its own.
 """
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from simulator.checks import FloatArray
 from simulator.effects.arm import ArmEffects, ThermalDrift
+from simulator.effects.arrays import AXES
 from simulator.effects.flicker import Ladder, flicker
 from simulator.effects.hysteresis import PrandtlIshlinskii
 from simulator.effects.sensor import SensorEffects
 from simulator.effects.stage import StageEffects
 from simulator.effects.vibration import VibrationMode
-from simulator.randomisation.distributions import NONE, Distribution, drawn
-
-Generators = Sequence[np.random.Generator]
+from simulator.randomisation.distributions import NONE, Distribution, Generators, drawn
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +44,10 @@ class DriftDistribution:
 
 @dataclass(frozen=True, slots=True)
 class SensorDistribution:
-    """See `SensorEffects`; rate and latency are the same for all environments."""
+    """See `SensorEffects`; rate, latency, range and resolution are the same for all environments.
+
+    Raises `ValueError` for crosstalk of a sensor without a range.
+    """
 
     sample_rate_Hz: float
     noise_density: Axes = field(default_factory=Axes)
@@ -53,18 +55,40 @@ class SensorDistribution:
     bias: Axes = field(default_factory=Axes)
     drift: DriftDistribution | None = None
     latency_s: float = 0.0
+    crosstalk: Distribution = NONE
+    """What an axis reads, as a share of its range, of a full load on another or, in excess of that
+    load, on itself; drawn for each of the 36 pairs."""
+    range: tuple[float, float] = (math.inf, math.inf)
+    """Of each force [N] and each torque [N*m]; infinite for no end."""
+    resolution: tuple[float, float] = (0.0, 0.0)
+    """Of each force [N] and each torque [N*m]."""
+
+    def __post_init__(self) -> None:
+        if self.crosstalk != NONE and not math.isfinite(sum(self.range)):
+            raise ValueError(
+                f"SensorDistribution.range is {self.range!r}; it must be finite, for crosstalk is "
+                "a share of it"
+            )
 
     def drawn(self, generators: Generators) -> SensorEffects:
         """A batch of sensors, one per environment."""
         noise, bias = self.noise_density.drawn(generators), self.bias.drawn(generators)
+        shares = drawn(self.crosstalk, AXES * AXES, generators).reshape(-1, AXES, AXES)
         drift = Ladder()
         if self.drift is not None:
             drift = flicker(self.drift.density_at_1_Hz.drawn(generators), self.drift.band_Hz)
+        ends = np.repeat(self.range, 3)
+        crosstalk = None
+        if self.crosstalk != NONE:
+            crosstalk = np.eye(AXES) + shares * ends[:, np.newaxis] / ends
         return SensorEffects(
             self.sample_rate_Hz,
+            crosstalk=crosstalk,
             bias=bias,
             drift=drift,
             noise_density=noise,
+            range=ends,
+            resolution=np.repeat(self.resolution, 3),
             latency_samples=self.latency_s * self.sample_rate_Hz,
         )
 

@@ -22,6 +22,8 @@ _UNITS = {
     "mN_s": "mN s",
     "mN_um": "mN/um",
     "um_N": "um/N",
+    "um_mN": "um/mN",
+    "urad_uNm": "urad/(uN m)",
     "mm_s2": "mm/s2",
     "mm_s": "mm/s",
     "deg_s": "deg/s",

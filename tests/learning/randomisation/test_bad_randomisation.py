@@ -9,6 +9,7 @@ from tests.learning.randomisation.plant_files import (
     KINDS,
     NUMBERS,
     REQUIRED,
+    ROUNDING,
     SPREADS,
     Number,
     Refuse,
@@ -26,6 +27,9 @@ WRONG_UNITS = {
     "deg": ("deg", "rad"),
     "mN/um": ("mN_um", "N_mm"),
     "mN": ("mN", "N"),
+    "um/mN": ("um_mN", "mm_N"),
+    "urad/(uN m)": ("urad_uNm", "deg_Nm"),
+    "%": ("percent", "permille"),
     "uN m": ("uNm", "Nm"),
     "uN/sqrt(Hz)": ("uN_rtHz", "mN_rtHz"),
     "nN m/sqrt(Hz)": ("nNm_rtHz", "uNm_rtHz"),
@@ -42,7 +46,7 @@ def every(rows: tuple[Any, ...]) -> pytest.MarkDecorator:
 
 
 def with_value(path: str, value: object) -> dict[str, Any]:
-    file = full()
+    file = full(path)
     put(file, path, value)
     return file
 
@@ -76,7 +80,7 @@ def test_a_number_out_of_range(row: Number, refuse: Refuse) -> None:
 
 @every(tuple(row for row in ROWS if row.path in REQUIRED))
 def test_missing(row: Spread | Number, refuse: Refuse) -> None:
-    file = full()
+    file = full(row.path)
     drop(file, row.path)
     valid = f"a group of keys: {KINDS}" if isinstance(row, Spread) else f"a number {row.range}"
     unit = f", in {row.unit}" if row.unit else ""
@@ -85,11 +89,12 @@ def test_missing(row: Spread | Number, refuse: Refuse) -> None:
 
 @every(tuple(row for row in ROWS if row.unit))
 def test_wrong_unit(row: Spread | Number, refuse: Refuse) -> None:
-    file = full()
+    file = full(row.path)
     right, wrong = WRONG_UNITS[row.unit]
-    path = row.path.removesuffix(right) + wrong
-    put(file, path, drop(file, row.path))
-    key = row.path.split(".")[-1]
+    stated = row.path.removesuffix("[1]") if isinstance(row, Number) else row.path
+    path = stated.removesuffix(right) + wrong
+    put(file, path, drop(file, stated))
+    key = stated.split(".")[-1]
     assert refuse(file) == (
         f"{FILE}: {path} is not a key: did you mean {key}? Its unit is {row.unit}"
     )
@@ -177,8 +182,38 @@ CROSS: list[tuple[str, object, str]] = [
     (
         "holes[1].clearance_um",
         {"uniform": [-50, 10]},
-        "holes[1].clearance_um reaches -50: must be above -40 throughout, "
+        "holes[1].clearance_um reaches -50: must be above -40.5 throughout, "
         "where the thinnest shaft has no hole",
+    ),
+    (
+        "holes[1].entry_chamfer.height_um",
+        {"uniform": [5, 500]},
+        "holes[1].entry_chamfer.height_um reaches 500: must be below 500 throughout, "
+        "the thickness of the thinnest wall",
+    ),
+    (
+        "shaft.leading_chamfer.width_um",
+        {"uniform": [5, 20]},
+        "shaft.leading_chamfer.width_um reaches 20: must be below 20 throughout, "
+        "the radius of the thinnest shaft",
+    ),
+    (
+        ROUNDING,
+        {"uniform": [5, 20.5]},
+        "shaft.leading_rounding_um reaches 20.5: must be below 20 throughout, "
+        "the radius of the thinnest shaft",
+    ),
+    (
+        "shaft.trailing_chamfer.width_um",
+        {"constant": 21},
+        "shaft.trailing_chamfer.width_um reaches 21: must be below 20 throughout, "
+        "the radius of the thinnest shaft",
+    ),
+    (
+        "shaft.trailing_chamfer.height_um",
+        {"log_uniform": [5, 3999.75]},
+        "shaft.length_um reaches 4000: must be above 4000.25 throughout, "
+        "the length of the worked ends",
     ),
     (
         "force_sensor.drift.highest_frequency_Hz",
@@ -195,8 +230,8 @@ CROSS: list[tuple[str, object, str]] = [
     (
         "xyzzy",
         1,
-        "xyzzy is not a key: valid keys are contact, shaft, holes, alignment, force_sensor, stage, "
-        "arm",
+        "xyzzy is not a key: valid keys are contact, shaft, common_clearance_um, holes, alignment, "
+        "force_sensor, stage, arm, holder",
     ),
 ]
 
@@ -208,6 +243,35 @@ def test_what_does_not_fit_together(
     file = with_value(path, value)
     put(file, "shaft.diameter_um", {"uniform": [40, 50]})
     assert refuse(file) == f"{FILE}: {expected}"
+
+
+def test_a_leading_end_is_chamfered_or_rounded(refuse: Refuse) -> None:
+    file = full()
+    put(file, ROUNDING, {"constant": 5})
+    assert refuse(file) == (
+        f"{FILE}: shaft.leading_rounding_um is not valid beside leading_chamfer: "
+        "the leading end has one of the two"
+    )
+
+
+def test_what_holes_have_in_common_counts(refuse: Refuse) -> None:
+    file = with_value("common_clearance_um", {"choice": [-41, 12]})
+    put(file, "shaft.diameter_um", {"uniform": [40, 50]})
+    put(file, "holes[1].clearance_um", {"uniform": [1.25, 2]})
+    assert refuse(file) == (
+        f"{FILE}: holes[0].clearance_um reaches 0.5: must be above 1 throughout, "
+        "where the thinnest shaft has no hole"
+    )
+
+
+def test_crosstalk_needs_the_ranges_that_it_is_a_share_of(refuse: Refuse) -> None:
+    file = full()
+    for key in ("force_range_mN", "torque_range_uNm"):
+        drop(file, f"force_sensor.{key}")
+    assert refuse(file).splitlines() == [
+        f"{FILE}: force_sensor.force_range_mN is missing: crosstalk_percent is a share of it",
+        f"{FILE}: force_sensor.torque_range_uNm is missing: crosstalk_percent is a share of it",
+    ]
 
 
 def test_all_problems_are_told_at_once(refuse: Refuse) -> None:

@@ -1,71 +1,16 @@
 """Batches of plants: each environment its own, each parameter its own distribution."""
 
-from collections.abc import Iterator
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import pytest
 from scipy import stats
 
-from simulator.checks import FloatArray
-from simulator.contact import ContactLaw
 from simulator.effects import arm, sensor, stage
-from simulator.geometry import Shaft
-from simulator.randomisation.distributions import Constant, LogUniform, TruncatedNormal, Uniform
-from simulator.randomisation.plants import (
-    HoleDistribution,
-    PlantDistribution,
-    Plants,
-    draw_plants,
-)
-from simulator.randomisation.rig import (
-    ArmDistribution,
-    Axes,
-    DriftDistribution,
-    ModeDistribution,
-    SensorDistribution,
-    StageDistribution,
-    ThermalDistribution,
-)
-
-SIZES = Axes(Uniform(1e-7, 2e-7), LogUniform(1e-6, 1e-4))
-WIDE = PlantDistribution(
-    stiffness_N_m=LogUniform(2e3, 12e3),
-    friction=Uniform(0.1, 0.3),
-    shaft_diameter_m=TruncatedNormal(1e-3, 1e-6, 0.99e-3, 1.01e-3),
-    shaft_length_m=Constant(4e-3),
-    holes=(
-        HoleDistribution(Uniform(-2e-6, 14e-6), Uniform(30e-6, 500e-6)),
-        HoleDistribution(Uniform(2e-6, 14e-6), Constant(0.5e-3), Uniform(1.5e-3, 2.5e-3)),
-    ),
-    position_error_m=Constant(1e-5),
-    tilt_error_rad=Constant(5e-3),
-    sensor=SensorDistribution(
-        1000.0, SIZES, SIZES, DriftDistribution(SIZES, (0.01, 1.0)), latency_s=2e-3
-    ),
-    stage=StageDistribution(SIZES, SIZES, SIZES, Uniform(0.0, 1.0), SIZES, 0.02),
-    arm=ArmDistribution(
-        (ThermalDistribution(SIZES, 600.0),), SIZES, (ModeDistribution(SIZES, 12.0, 0.05),)
-    ),
-    position_noise_m=Uniform(0.0, 1e-6),
-)
-SEEDS = (5, 17, 3, 8, 13, 2, 11, 7, 19)
-
-
-def plants(seeds: tuple[int, ...], distribution: PlantDistribution = WIDE) -> Plants:
-    return draw_plants(distribution, [np.random.default_rng(seed) for seed in seeds])
-
-
-def arrays(value: object, name: str = "") -> Iterator[tuple[str, FloatArray]]:
-    """Every array of a value, by its place."""
-    if isinstance(value, np.ndarray):
-        yield name, value
-    elif isinstance(value, tuple):
-        for index, item in enumerate(value):
-            yield from arrays(item, f"{name}[{index}]")
-    elif is_dataclass(value):
-        for field in fields(value):
-            yield from arrays(getattr(value, field.name), f"{name}.{field.name}")
+from simulator.randomisation.distributions import NONE, Constant, Uniform
+from simulator.randomisation.geometry import SHARP, ShaftDistribution
+from simulator.randomisation.holder import HolderDistribution
+from simulator.randomisation.rig import ArmDistribution, SensorDistribution, StageDistribution
+from tests.simulator.randomisation.plant_batches import SEEDS, WIDE, arrays, plants
 
 
 def test_a_plant_is_the_same_whatever_the_batch() -> None:
@@ -77,7 +22,7 @@ def test_a_plant_is_the_same_whatever_the_batch() -> None:
             if alone.ndim and alone.shape[0] == 1 and rows.shape[0] == len(SEEDS):
                 np.testing.assert_array_equal(rows[i], alone[0], err_msg=name)
                 differing += 1
-    assert differing == 20 * len(SEEDS)
+    assert differing == 28 * len(SEEDS)
 
 
 def test_every_parameter_has_its_distribution_and_none_follows_another() -> None:
@@ -85,6 +30,8 @@ def test_every_parameter_has_its_distribution_and_none_follows_another() -> None
     n = 3000
     drawn = plants(tuple(range(n)))
     clearance = drawn.hole_diameter_m - drawn.shaft_diameter_m[:, np.newaxis]
+    crosstalk = drawn.sensor.crosstalk
+    assert crosstalk is not None
     columns = {
         "stiffness": (drawn.stiffness_N_m, stats.loguniform(2e3, 12e3)),
         "friction": (drawn.friction, stats.uniform(0.1, 0.2)),
@@ -95,6 +42,22 @@ def test_every_parameter_has_its_distribution_and_none_follows_another() -> None
         "gap": (drawn.hole_gap_m[:, 1], stats.uniform(1.5e-3, 1e-3)),
         "noise": (drawn.position_noise_m[:, 2], stats.uniform(0.0, 1e-6)),
         "backlash": (drawn.stage.backlash[:, 1], stats.uniform(1e-7, 1e-7)),
+        "tangential": (
+            drawn.tangential_stiffness_N_m / drawn.stiffness_N_m,
+            stats.uniform(0.7, 0.3),
+        ),
+        "leading": (drawn.shaft_leading_m[:, 0], stats.uniform(5e-6, 25e-6)),
+        "trailing": (drawn.shaft_trailing_m[:, 1], stats.loguniform(5e-6, 2e-5)),
+        "entry 1": (drawn.hole_entry_m[:, 0, 1], stats.loguniform(5e-6, 2e-5)),
+        "entry 2": (drawn.hole_entry_m[:, 1, 0], stats.uniform(5e-6, 25e-6)),
+        "compliance x": (drawn.holders.compliance[:, 0], stats.loguniform(5e-5, 5e-4)),
+        "compliance rx": (drawn.holders.compliance[:, 3], stats.uniform(2.0, 18.0)),
+        "holding force": (drawn.holders.holding_force[:, 0], stats.uniform(0.1, 0.4)),
+        "holding torque": (drawn.holders.holding_force[:, 4], stats.loguniform(1e-4, 1e-3)),
+        "gain": (crosstalk[:, 2, 2], stats.uniform(0.98, 0.04)),
+        "crosstalk": (crosstalk[:, 1, 2], stats.uniform(-0.02, 0.04)),
+        "force by torque": (crosstalk[:, 0, 5], stats.uniform(-10.0, 20.0)),
+        "torque by force": (crosstalk[:, 5, 0], stats.uniform(-4e-5, 8e-5)),
         "bias": (drawn.sensor.bias[:, 4], stats.loguniform(1e-6, 1e-4)),
         "weight": (drawn.stage.hysteresis.weights[:, 0, 5], stats.uniform()),
         "vibration": (drawn.arm.modes[0].rms[:, 0], stats.uniform(1e-7, 1e-7)),
@@ -110,30 +73,63 @@ def test_every_parameter_has_its_distribution_and_none_follows_another() -> None
 
 
 def test_a_parameter_keeps_its_values_when_another_is_drawn_otherwise() -> None:
-    narrow = replace(WIDE, stiffness_N_m=Constant(4e3), shaft_length_m=Uniform(4e-3, 5e-3))
+    longer = replace(WIDE.shaft, length_m=Uniform(4e-3, 5e-3))
+    narrow = replace(WIDE, stiffness_N_m=Constant(4e3), shaft=longer)
     one, other = plants(SEEDS), plants(SEEDS, narrow)
     assert other.stiffness_N_m.tolist() == [4e3] * len(SEEDS)
     np.testing.assert_array_equal(one.hole_diameter_m, other.hole_diameter_m)
     np.testing.assert_array_equal(one.arm.modes[0].rms, other.arm.modes[0].rms)
 
 
-def test_one_plant_of_a_batch_is_geometry_and_contact_law() -> None:
+def test_what_is_switched_on_changes_nothing_else() -> None:
+    """Worked edges, common clearance, crosstalk and holder take their numbers all the same."""
+    off = replace(
+        WIDE,
+        shaft=ShaftDistribution(WIDE.shaft.diameter_m, WIDE.shaft.length_m),
+        holes=tuple(replace(hole, entry=SHARP) for hole in WIDE.holes),
+        sensor=replace(WIDE.sensor, crosstalk=NONE),
+        holder=HolderDistribution(),
+    )
+    rounded = replace(off, shaft=replace(off.shaft, rounding_m=Uniform(1e-5, 2e-5)))
+    alike = replace(off, common_clearance_m=Uniform(1e-5, 2e-5))
+    switched = {
+        ".shaft_leading_m",
+        ".shaft_trailing_m",
+        ".hole_entry_m",
+        ".sensor.crosstalk",
+        ".holders.compliance",
+        ".holders.holding_force",
+        ".holders.pivot_m",
+    }
+    for other, changed in (
+        (off, switched),
+        (rounded, switched | {".shaft_rounding_m"}),
+        (alike, switched | {".hole_diameter_m"}),
+    ):
+        rest = dict(arrays(plants(SEEDS, other)))
+        differing = {
+            name
+            for name, array in arrays(plants(SEEDS))
+            if name not in rest or not np.array_equal(array, rest[name])
+        }
+        assert differing == changed
+
+
+def test_holes_of_one_tool_are_alike() -> None:
+    """The correlation of two sums that share one term is its share of the variance."""
+    n = 3000
+    own = Uniform(-1e-6, 1e-6)
     d = replace(
         WIDE,
-        friction=Constant(0.25),
-        shaft_diameter_m=Constant(1e-3),
-        holes=(
-            HoleDistribution(Constant(1e-5), Constant(5e-4)),
-            HoleDistribution(Constant(-1e-6), Constant(2e-4), Constant(1.5e-3)),
-        ),
+        common_clearance_m=Uniform(4e-6, 12e-6),
+        holes=tuple(replace(hole, clearance_m=own) for hole in WIDE.holes),
     )
-    drawn = plants((1, 2), d)
-    assert drawn.shaft(1) == Shaft(1e-3, 4e-3)
-    first, second = drawn.part(1).holes
-    assert (first.thickness_m, first.gap_m) == (5e-4, 0.0)
-    assert (second.thickness_m, second.gap_m) == (2e-4, 1.5e-3)
-    assert [first.diameter_m, second.diameter_m] == pytest.approx([1.01e-3, 0.999e-3], rel=1e-12)
-    assert drawn.law(1) == ContactLaw(float(drawn.stiffness_N_m[1]), 0.25)
+    drawn = plants(tuple(range(n)), d)
+    clearance = drawn.hole_diameter_m - drawn.shaft_diameter_m[:, np.newaxis]
+    apart = stats.triang(0.5, -2e-6, 4e-6)
+    assert stats.kstest(clearance[:, 1] - clearance[:, 0], apart.cdf).pvalue > 1e-6
+    expected = 8.0**2 / (8.0**2 + 2.0**2)
+    assert abs(np.corrcoef(clearance.T)[0, 1] - expected) < 5.0 * (1.0 - expected**2) / np.sqrt(n)
 
 
 def test_the_effects_run_as_a_batch() -> None:
@@ -179,17 +175,3 @@ def test_what_is_left_out_is_off() -> None:
     np.testing.assert_array_equal(stage.move(drawn.stage, load, rest, 0.0, load).position, load)
     still = arm.step(drawn.arm, arm.cold(drawn.arm, np.zeros((n, 0))), 1.0, load)
     np.testing.assert_array_equal(arm.displacement(drawn.arm, still), np.zeros((n, 6)))
-
-
-@pytest.mark.parametrize(
-    "holes", [(), (HoleDistribution(Constant(1e-5), Constant(1e-3), Constant(1e-3)),)]
-)
-def test_the_first_hole_has_no_gap(holes: tuple[HoleDistribution, ...]) -> None:
-    with pytest.raises(ValueError, match=r"PlantDistribution.holes is .* the first without a gap"):
-        replace(WIDE, holes=holes)
-
-
-def test_a_plant_that_cannot_be_is_refused() -> None:
-    broken = replace(WIDE, stage=StageDistribution(backlash=Axes(Constant(-1.0))))
-    with pytest.raises(ValueError, match=r"StageEffects.backlash is -1.0"):
-        plants((1,), broken)
