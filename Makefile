@@ -33,6 +33,7 @@ bench: $(READY)  ## speed, measured side by side on this machine
 	$(BIN)/python benchmarks/engine.py
 	$(BIN)/python benchmarks/simulated_time.py
 	$(BIN)/python benchmarks/real_time.py
+	$(BIN)/python benchmarks/environment.py
 
 mutation: $(READY)  ## break supervisor and gate on purpose, and see the tests notice
 	$(BIN)/python tests/mutation.py

@@ -5,11 +5,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+import numpy as np
+import numpy.typing as npt
 from figures_of import (
     chamfer_map,
     contact_kinds,
     contact_states,
     cut_circle,
+    environment,
     extremum,
     faces,
     force_map,
@@ -18,6 +21,7 @@ from figures_of import (
     mock_cell,
     ring,
 )
+from matplotlib.image import imsave
 
 FOLDER = Path(__file__).parent / "figures"
 FIGURES: Mapping[str, Callable[[], str]] = MappingProxyType(
@@ -36,13 +40,19 @@ FIGURES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "jamming": jamming.draw,
     }
 )
+PICTURES: Mapping[str, Callable[[], npt.NDArray[np.uint8]]] = MappingProxyType(
+    {"environment": environment.draw}
+)
 
 
 def main(names: list[str]) -> None:
     """Write the named figures, or all."""
     FOLDER.mkdir(exist_ok=True)
-    for name in names or FIGURES:
-        (FOLDER / f"{name}.svg").write_text(FIGURES[name](), encoding="utf-8")
+    for name in names or [*FIGURES, *PICTURES]:
+        if name in PICTURES:
+            imsave(FOLDER / f"{name}.png", PICTURES[name]())
+        else:
+            (FOLDER / f"{name}.svg").write_text(FIGURES[name](), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -9,10 +9,10 @@ are: results do not depend on the batch.
 import numpy as np
 
 from simulator.checks import FloatArray
+from simulator.compiled import Record, inlined, kernel, scalar
 from simulator.engine.batch import Found, Given
 from simulator.engine.blocking import find_ends, stand_on_walls
 from simulator.engine.circle import edge_circle, rim_circle
-from simulator.engine.compiled import Record, inlined, kernel, scalar
 from simulator.engine.exchange import give, take_geometries, take_poses
 from simulator.engine.lanes import BLOCK, VECTOR
 from simulator.engine.loads import Vector, Wrench, contact_load

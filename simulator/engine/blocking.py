@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from simulator.checks import FloatArray
-from simulator.engine.compiled import Record, inlined, scalar
+from simulator.compiled import Record, inlined, scalar
 from simulator.engine.direction import NEAR, direction, near_direction
 from simulator.engine.loads import contact_load
 

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from simulator.checks import FloatArray
-from simulator.engine.compiled import inlined, scalar
+from simulator.compiled import inlined, scalar
 from simulator.engine.loads import Vector
 
 RIM, LEADING_EDGE, TRAILING_EDGE = range(3)

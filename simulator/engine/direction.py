@@ -6,7 +6,7 @@ below |m|, so that e is m turned by a small angle; this case has no branches.
 
 import math
 
-from simulator.engine.compiled import inlined, scalar
+from simulator.compiled import inlined, scalar
 
 NEAR = 1.0 / 32.0
 """Largest b/|m| of `near_direction`."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from simulator.checks import FloatArray
+from simulator.compiled import Record, scalar
 from simulator.engine.batch import Found, Given
-from simulator.engine.compiled import Record, scalar
 from simulator.engine.pose import heading, is_valid
 from simulator.engine.states import INVALID, contact_state
 from simulator.engine.table import WALL_COLUMNS, Table

@@ -2,7 +2,7 @@
 
 import math
 
-from simulator.engine.compiled import inlined
+from simulator.compiled import inlined
 
 _PARALLEL = 1e-9
 _TINY = 1e-150

@@ -6,7 +6,7 @@ cylinder; edges are those of the shaft, against a bore.
 
 import math
 
-from simulator.engine.compiled import inlined
+from simulator.compiled import inlined
 from simulator.engine.direction import NEAR, near_direction
 from simulator.engine.loads import Vector
 

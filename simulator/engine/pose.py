@@ -2,7 +2,7 @@
 
 import math
 
-from simulator.engine.compiled import inlined
+from simulator.compiled import inlined
 from simulator.engine.trigonometry import sin_cos
 
 _UPRIGHT_SQUARE = 1e-290

@@ -7,6 +7,7 @@ arc.
 import math
 
 from simulator.checks import FloatArray
+from simulator.compiled import inlined, scalar
 from simulator.engine.circle import (
     RIM,
     SMALLEST,
@@ -18,7 +19,6 @@ from simulator.engine.circle import (
     place,
     spot,
 )
-from simulator.engine.compiled import inlined, scalar
 from simulator.engine.direction import direction
 from simulator.engine.loads import Vector, Wrench, contact_load
 from simulator.engine.trigonometry import sin_cos

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from simulator.compiled import inlined, scalar
 from simulator.engine.circle import edge_circle, rim_circle
-from simulator.engine.compiled import inlined, scalar
 from simulator.engine.loads import Vector, Wrench, contact_load
 from simulator.engine.plain import edge_contact, edge_is_near, rim_contact, rim_is_near
 from simulator.engine.pose import heading, is_valid

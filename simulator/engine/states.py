@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from simulator.engine.compiled import inlined
+from simulator.compiled import inlined
 from simulator.states import ContactState
 
 INVALID = -1

@@ -2,7 +2,7 @@
 
 import math
 
-from simulator.engine.compiled import inlined
+from simulator.compiled import inlined
 
 _HALF_PI, _HALF_PI_REST = 0.5 * math.pi, 6.123233995736766e-17
 _QUARTER_PI = 0.25 * math.pi

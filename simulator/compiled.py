@@ -1,6 +1,7 @@
 """Numba's decorators with types: the only place where compiled code is untyped."""
 
 from collections.abc import Callable
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -11,8 +12,6 @@ from numba.core.caching import FunctionCache
 Function = TypeVar("Function", bound=Callable[..., Any])
 Record = Any
 """One element of a structured array, whose fields are arrays."""
-
-_SOURCE = sha256(b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))))
 
 
 def inlined(function: Function) -> Function:
@@ -31,13 +30,23 @@ def scalar(function: Function) -> Function:
 def kernel(function: Function) -> Function:
     """Compile a loop over arrays, free of the interpreter's lock, and keep it on disk."""
     dispatcher = njit(function, error_model="numpy", nogil=True)
-    dispatcher._cache = _PackageCache(function)  # type: ignore[no-untyped-call]
+    dispatcher._cache = _PackageCache(function)
     return cast(Function, dispatcher)
 
 
 class _PackageCache(FunctionCache):
-    """Keeps compiled code until any file of the package changes, not only the kernel's own."""
+    """Keeps compiled code until any file of the kernel's folder changes, not only its own."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        self._source = _source(Path(function.__code__.co_filename).parent)
 
     def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
         key = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]
-        return (*key, _SOURCE.hexdigest())
+        return (*key, self._source)
+
+
+@cache
+def _source(folder: Path) -> str:
+    """Digest of all Python files of a folder."""
+    return sha256(b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))).hexdigest()
