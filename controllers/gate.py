@@ -1,6 +1,7 @@
 """The gate: sole holder of the actuators. Nothing reaches them but through the supervisor.
 
-Every call returns what was really sent.
+A command rests on the snapshot that was watched last, and on no other command after it: each one
+changes what the verdict on that snapshot was about.
 """
 
 import math
@@ -14,7 +15,6 @@ from controllers.messages import (
     Proposal,
     Reason,
     ResetRecord,
-    Rule,
     Sent,
     Severity,
     Snapshot,
@@ -41,9 +41,8 @@ class Gate:
         self._memory = Memory()
         self._running: RunningMove | None = None
         self._arm_sent_ns = 0
-        self._standing = Verdict(
-            0, (Reason(Rule.MISSING_DATA, Severity.HOLD, "nothing has been watched yet"),)
-        )
+        self._watched: tuple[Snapshot, Verdict] | None = None
+        """What the next command may rest on; nothing once a command has been given."""
 
     @property
     def latched(self) -> tuple[Reason, ...]:
@@ -74,7 +73,7 @@ class Gate:
             self._running = None
         running = self._running
         verdict, self._memory = watch(self.limits, self._hold_pose, self._memory, snapshot, running)
-        self._standing = verdict
+        self._watched = snapshot, verdict
         severity = verdict.severity
         leaving = severity is Severity.RETREAT and running is not None and running.retreats
         if severity >= Severity.HOLD and not leaving:
@@ -85,11 +84,13 @@ class Gate:
         return verdict
 
     def send_step(self, proposal: Proposal, snapshot: Snapshot, now_ns: int) -> Sent:
-        """Judge a step proposed on the snapshot last watched, and send what is allowed of it."""
-        self._demand_watched(snapshot)
-        verdict, step = judge(
-            self.limits, self._hold_pose, self._standing, snapshot, proposal, now_ns
-        )
+        """Judge a step proposed on the snapshot last watched, and send what is allowed of it.
+
+        Sent or refused, the step uses the snapshot up: the next command needs a new one.
+        """
+        standing = self._standing(snapshot)
+        self._watched = None
+        verdict, step = judge(self.limits, self._hold_pose, standing, snapshot, proposal, now_ns)
         self._memory = latch(self._memory, verdict.reasons)
         if step is None or snapshot.stage is None:
             return Sent(now_ns, proposal.number, verdict, None)
@@ -118,6 +119,7 @@ class Gate:
             raise SafetyError(f"arm target {target} is not finite")
         self._demand_calm(snapshot)
         self._demand_clear(snapshot)
+        self._watched = None
         self._arm.move_to(target, self.limits.arm_speed_m_s)
         self._arm_sent_ns = snapshot.now_ns
 
@@ -130,10 +132,12 @@ class Gate:
         self._demand_calm(snapshot)
         if is_open:
             self._demand_clear(snapshot)
+        self._watched = None
         self._gripper.set_valve(is_open)
 
     def hold(self) -> None:
         """Halt stage and arm, whatever they do; the part stays held."""
+        self._watched = None
         self._running = None
         try:
             self._stage.halt()
@@ -153,17 +157,19 @@ class Gate:
         if snapshot.arm is None or snapshot.arm.moving:
             self._arm.halt()
 
-    def _demand_watched(self, snapshot: Snapshot) -> None:
-        if self._standing.stamp_ns != snapshot.now_ns:
+    def _standing(self, snapshot: Snapshot) -> Verdict:
+        """Return the verdict on `snapshot`; raises SafetyError if it may not be acted on."""
+        if self._watched is None or self._watched[0] is not snapshot:
             raise SafetyError(
-                f"the snapshot of {snapshot.now_ns} ns has not been watched; "
-                f"the last one watched is of {self._standing.stamp_ns} ns"
+                f"the snapshot of {snapshot.now_ns} ns is not the last one watched, "
+                "or a command has been given on it"
             )
+        return self._watched[1]
 
     def _demand_calm(self, snapshot: Snapshot) -> None:
-        self._demand_watched(snapshot)
-        if self._standing.severity >= Severity.HOLD:
-            raise SafetyError("; ".join(str(reason) for reason in self._standing.reasons))
+        standing = self._standing(snapshot)
+        if standing.severity >= Severity.HOLD:
+            raise SafetyError("; ".join(str(reason) for reason in standing.reasons))
         for device in (snapshot.stage, snapshot.arm):
             if device is None or device.moving:
                 raise SafetyError(f"only while stage and arm are at rest, not with {device}")
