@@ -75,7 +75,7 @@ class Gate:
         verdict, self._memory = watch(self.limits, self._hold_pose, self._memory, snapshot, running)
         self._watched = snapshot, verdict
         severity = verdict.severity
-        leaving = severity is Severity.RETREAT and running is not None and running.retreats
+        leaving = severity is Severity.RETREAT and running is not None and running.leads_out
         if severity >= Severity.HOLD and not leaving:
             self._halt_what_moves(snapshot)
         elif running is not None and severity is Severity.REDUCE:
@@ -98,8 +98,9 @@ class Gate:
         if any((*step.translation, *step.rotation)):
             speeds = _stage_speeds(step.travel, step.speed_m_s)
             command = self._stage.move_to(target, *speeds)
-            retreats = step.translation[2] < 0.0
-            self._running = RunningMove(command.stamp_ns, step.travel, retreats, step.speed_m_s)
+            self._running = RunningMove(
+                command.stamp_ns, step.travel, step.leads_out, step.speed_m_s
+            )
         return Sent(
             now_ns,
             proposal.number,

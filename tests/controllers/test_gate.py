@@ -251,13 +251,14 @@ def test_a_retreat_lets_the_way_out_run_and_halts_everything_else() -> None:
     bench.see(now + MS, (0.060, 0.0, 0.0))
     assert bench.stage.halts == 0
 
-    bench = Bench()
-    now = overload(bench, NOW, 120)
-    seen = bench.see(now, (0.060, 0.0, 0.0))
-    assert bench.gate.send_step(proposal((1e-6, 0.0, 0.0), stamp_ns=now), seen, now).target
-    bench.stage.now = stage(moving=True)
-    overload(bench, now + 5 * MS, 20)
-    assert bench.stage.halts > 0
+    for not_out in ((1e-6, 0.0, 0.0), (20e-6, 0.0, -19e-6)):
+        bench = Bench()
+        now = overload(bench, NOW, 120)
+        seen = bench.see(now, (0.060, 0.0, 0.0))
+        assert bench.gate.send_step(proposal(not_out, stamp_ns=now), seen, now).target
+        bench.stage.now = stage(moving=True)
+        overload(bench, now + 5 * MS, 20)
+        assert bench.stage.halts > 0
 
 
 def test_the_arm_moves_only_in_calm_and_clear() -> None:
