@@ -40,6 +40,7 @@ class Gate:
         self._gripper = gripper
         self._memory = Memory()
         self._running: RunningMove | None = None
+        self._stage_sent_ns = 0
         self._arm_sent_ns = 0
         self._watched: tuple[Snapshot, Verdict] | None = None
         """What the next command may rest on; nothing once a command has been given."""
@@ -61,7 +62,7 @@ class Gate:
         A state from before the last command counts as moving.
         """
         stage, arm, gripper = self._stage.state(), self._arm.state(), self._gripper.state()
-        if self._running is not None and stage.stamp_ns < self._running.stamp_ns:
+        if stage.stamp_ns < self._stage_sent_ns:
             stage = stage._replace(moving=True)
         if arm.stamp_ns < self._arm_sent_ns:
             arm = arm._replace(moving=True)
@@ -97,10 +98,9 @@ class Gate:
         target = displaced(snapshot.stage.pose, step)
         if any((*step.translation, *step.rotation)):
             speeds = _stage_speeds(step.travel, step.speed_m_s)
-            command = self._stage.move_to(target, *speeds)
-            self._running = RunningMove(
-                command.stamp_ns, step.travel, step.leads_out, step.speed_m_s
-            )
+            self._stage_sent_ns = now_ns
+            self._stage_sent_ns = self._stage.move_to(target, *speeds).stamp_ns
+            self._running = RunningMove(step.travel, step.leads_out, step.speed_m_s)
         return Sent(
             now_ns,
             proposal.number,
@@ -121,8 +121,8 @@ class Gate:
         self._demand_calm(snapshot)
         self._demand_clear(snapshot)
         self._watched = None
-        self._arm.move_to(target, self.limits.arm_speed_m_s)
         self._arm_sent_ns = snapshot.now_ns
+        self._arm.move_to(target, self.limits.arm_speed_m_s)
 
     def send_valve(self, is_open: bool, snapshot: Snapshot) -> None:
         """Open or close the vacuum valve; only while nothing moves.

@@ -47,8 +47,6 @@ SHORTEST_MOVE_M = 1e-15
 class RunningMove:
     """The stage move that the gate has sent last."""
 
-    stamp_ns: int
-    """When the stage accepted it; a stage state older than this does not know of it."""
     travel: Travel
     leads_out: bool
     """Whether it is a way out of the part, which a retreat lets run."""

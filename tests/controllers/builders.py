@@ -116,7 +116,7 @@ def running(
     speed_m_s: float, translation: tuple[float, float, float] = (1e-5, 0.0, 0.0)
 ) -> RunningMove:
     travel = Travel.of(translation, (0.0, 0.0, 0.0), 4e-3)
-    return RunningMove(NOW, travel, translation[2] < 0.0, speed_m_s)
+    return RunningMove(travel, translation[2] < 0.0, speed_m_s)
 
 
 class FakeStage:
@@ -198,6 +198,12 @@ class Bench:
     ) -> Snapshot:
         """Bring all states up to date, watch, and return what was watched."""
         self.stage.now = self.stage.now._replace(stamp_ns=now_ns)
+        return self.look(now_ns, force)
+
+    def look(
+        self, now_ns: int = NOW, force: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> Snapshot:
+        """The same with the stage's state as old as it is."""
         self.arm.now = self.arm.now._replace(stamp_ns=now_ns)
         self.gripper.now = self.gripper.now._replace(stamp_ns=now_ns)
         seen = self.gate.snapshot(

@@ -20,6 +20,7 @@ from tests.controllers.builders import (
     arm,
     gripper,
     proposal,
+    rules,
     sample,
     stage,
 )
@@ -212,6 +213,48 @@ def test_a_stage_state_older_than_the_command_counts_as_moving() -> None:
     assert seen.stage == bench.stage.now
 
 
+@pytest.mark.parametrize("by_hand", [False, True])
+def test_after_a_halt_a_stage_state_older_than_the_command_still_counts_as_moving(
+    by_hand: bool,
+) -> None:
+    """Telemetry lags: what says that the stage rests is from before it was sent away."""
+    bench = Bench()
+    send(bench)
+    lagging = bench.stage.now._replace(stamp_ns=NOW - 5 * MS)
+    if by_hand:
+        bench.gate.hold()
+    else:
+        bench.stage.now = stage(moving=True)
+        stale(bench, NOW + MS)
+    bench.stage.now = lagging
+    for ms in range(2, 5):
+        seen = bench.look(NOW + ms * MS)
+        assert seen.stage == lagging._replace(moving=True)
+        wish = proposal(stamp_ns=seen.now_ns)
+        assert Rule.BUSY in rules(bench.gate.send_step(wish, seen, seen.now_ns).verdict)
+    bench.stage.now = stage(stamp_ns=NOW)
+    assert bench.look(NOW + 5 * MS).stage == stage(stamp_ns=NOW)
+
+
+def test_a_command_without_an_answer_makes_older_states_count_as_moving() -> None:
+    bench = Bench()
+    bench.stage.now = OUT_AND_CALM
+
+    def fail(*_: object) -> None:
+        raise DeviceError("no answer")
+
+    bench.stage.move_to = bench.arm.move_to = fail  # type: ignore[assignment, method-assign]
+    for send_one in (send_in, send_away):
+        seen = bench.see()
+        with pytest.raises(DeviceError):
+            send_one(bench, seen)
+    bench.stage.now, bench.arm.now = stage(stamp_ns=NOW - 1), arm(stamp_ns=NOW - 1)
+    seen = bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None)
+    assert seen.stage is not None
+    assert seen.arm is not None
+    assert (seen.stage.moving, seen.arm.moving) == (True, True)
+
+
 def test_an_arm_state_older_than_the_command_counts_as_moving() -> None:
     bench = Bench()
     bench.stage.now = OUT_AND_CALM
@@ -375,11 +418,11 @@ def test_without_a_state_the_device_is_halted() -> None:
     assert (bench.stage.halts, bench.arm.halts) == (1, 1)
 
 
-def test_an_arm_that_was_never_moved_rests_at_any_stamp() -> None:
+def test_what_was_never_moved_rests_at_any_stamp() -> None:
     bench = Bench()
-    bench.arm.now = arm(stamp_ns=0)
+    bench.stage.now, bench.arm.now = stage(stamp_ns=0), arm(stamp_ns=0)
     seen = bench.gate.snapshot(ManualClock(NOW), None, (0.0,) * 6, None)
-    assert seen.arm == arm(stamp_ns=0)
+    assert (seen.stage, seen.arm) == (stage(stamp_ns=0), arm(stamp_ns=0))
 
 
 def test_a_turn_is_sent_with_its_angular_speed() -> None:
