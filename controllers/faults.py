@@ -17,11 +17,13 @@ _BLIND = FilterHealth.STUCK | FilterHealth.SILENT
 
 
 class Load(NamedTuple):
-    """What a raw sample says once the bias is off."""
+    """What a raw sample says of the force on the part."""
 
     stamp_ns: int
+    raw: Vector3
+    """With the bias [N]."""
     force: Vector3
-    """[N]"""
+    """Less the bias [N]."""
     rate_N_s: float
     """Fastest growth of any axis since the sample before."""
     impulse_N_s: float
@@ -46,18 +48,18 @@ def weigh(limits: Limits, memory: Memory, snapshot: Snapshot) -> Load | None:
     sample, bias = snapshot.sample, snapshot.bias
     if sample is None or not finite(sample.wrench, bias):
         return None
-    wrench = sample.wrench
-    x, y, z = wrench[0] - bias[0], wrench[1] - bias[1], wrench[2] - bias[2]
+    raw = sample.wrench[:3]
+    x, y, z = raw[0] - bias[0], raw[1] - bias[1], raw[2] - bias[2]
     before, dt_s = memory.load, 0.0
     if before is not None:
         dt_s = (sample.stamp_ns - before.stamp_ns) * 1e-9
     if before is None or dt_s <= 0.0:
-        return Load(sample.stamp_ns, (x, y, z), 0.0, before.impulse_N_s if before else 0.0)
-    bx, by, bz = before.force
-    rate = max(abs(x - bx), abs(y - by), abs(z - bz)) / dt_s
+        return Load(sample.stamp_ns, raw, (x, y, z), 0.0, before.impulse_N_s if before else 0.0)
+    bx, by, bz = before.raw
+    rate = max(abs(raw[0] - bx), abs(raw[1] - by), abs(raw[2] - bz)) / dt_s
     excess = math.hypot(x, y) - limits.gentle_force_N
     impulse = before.impulse_N_s + excess * dt_s if excess > 0.0 else 0.0
-    return Load(sample.stamp_ns, (x, y, z), rate, impulse)
+    return Load(sample.stamp_ns, raw, (x, y, z), rate, impulse)
 
 
 def time_faults(limits: Limits, memory: Memory, snapshot: Snapshot) -> list[Reason]:
@@ -84,21 +86,35 @@ def time_faults(limits: Limits, memory: Memory, snapshot: Snapshot) -> list[Reas
     return reasons
 
 
-def load_faults(limits: Limits, load: Load) -> list[Reason]:
-    """Raw force, its growth and its impulse against their limits."""
+def load_faults(limits: Limits, snapshot: Snapshot, load: Load) -> list[Reason]:
+    """Raw force, its growth and its impulse against their limits.
+
+    Clear of the part and before the first tare, what the sensor reads is its bias, which may exceed
+    any limit: there only the growth counts.
+    """
     reasons = []
+    if load.rate_N_s > limits.force_rate_N_s:
+        detail = f"{load.rate_N_s:.1f} N/s, limit {limits.force_rate_N_s:.1f} N/s"
+        reasons.append(Reason(Rule.FORCE_RATE, Severity.HOLD, detail))
+    if _reads_bias_alone(limits, snapshot):
+        return reasons
     for axis, value, limit in zip("xyz", load.force, limits.force_N, strict=True):
         if abs(value) > limit:
             detail = f"f_{axis} = {value * 1e3:.1f} mN, limit {limit * 1e3:.1f} mN"
             reasons.append(Reason(Rule.FORCE, Severity.STOP, detail))
-    if load.rate_N_s > limits.force_rate_N_s:
-        detail = f"{load.rate_N_s:.1f} N/s, limit {limits.force_rate_N_s:.1f} N/s"
-        reasons.append(Reason(Rule.FORCE_RATE, Severity.HOLD, detail))
     if load.impulse_N_s > limits.impulse_N_s:
         limit_mN_s = limits.impulse_N_s * 1e3
         detail = f"{load.impulse_N_s * 1e3:.2f} mN s, limit {limit_mN_s:.2f} mN s"
         reasons.append(Reason(Rule.IMPULSE, Severity.RETREAT, detail))
     return reasons
+
+
+def _reads_bias_alone(limits: Limits, snapshot: Snapshot) -> bool:
+    estimate, stage = snapshot.estimate, snapshot.stage
+    if estimate is None or estimate.health is FilterHealth.OK or stage is None:
+        return False
+    untared = bool(estimate.health & FilterHealth.UNTARED)
+    return untared and stage.pose.position[2] <= limits.clear_depth_m
 
 
 def sensing_faults(snapshot: Snapshot) -> list[Reason]:

@@ -85,7 +85,7 @@ def watch(
     load = weigh(limits, memory, snapshot)
     reasons = time_faults(limits, memory, snapshot)
     if load is not None:
-        reasons += load_faults(limits, load)
+        reasons += load_faults(limits, snapshot, load)
     reasons += sensing_faults(snapshot)
     reasons += motion_faults(limits, hold_pose, snapshot)
     cap = math.inf

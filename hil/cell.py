@@ -198,7 +198,8 @@ class Cell:
         end_ns = tick.end_ns + round(timeout_s * 1e9)
         while not condition(tick):
             if tick.end_ns > end_ns:
-                raise DeviceTimeoutError(f"{failure} (waited {timeout_s:g} s)")
+                standing = "".join(f"; {reason}" for reason in tick.verdict.reasons)
+                raise DeviceTimeoutError(f"{failure} (waited {timeout_s:g} s){standing}")
             tick = self._loop.tick()
         return tick
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from controllers.faults import Memory
+from controllers.faults import Load, Memory
 from controllers.gate import Gate
 from controllers.governor import Travel
 from controllers.limits import Limits
@@ -88,6 +88,16 @@ def gripper(**changes: Any) -> GripperState:
 
 def snapshot(**changes: Any) -> Snapshot:
     return Snapshot(NOW, sample(), ZERO, estimate(), stage(), arm(), gripper())._replace(**changes)
+
+
+def load(
+    stamp_ns: int,
+    force: tuple[float, float, float],
+    rate_N_s: float = 0.0,
+    impulse_N_s: float = 0.0,
+) -> Load:
+    """Of a sensor without bias."""
+    return Load(stamp_ns, force, force, rate_N_s, impulse_N_s)
 
 
 def proposal(

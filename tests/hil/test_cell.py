@@ -1,7 +1,7 @@
 """The whole mock cell on simulated time: what its users see of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ from drivers.contract.messages import StageCommand, Vector3
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
 from hil.cell import Cell
-from hil.config import load_cell
+from hil.config import CellConfig, load_cell
 
 CONFIG = Path(__file__).parents[2] / "config"
 LIMITS_N = np.array([0.070, 0.100, 1.000])
@@ -52,10 +52,13 @@ class Watcher(Subscriber):
 
 
 def make_cell(
-    controller: str = "expert", seed: int = 1, part: str = "paper_online"
+    controller: str = "expert",
+    seed: int = 1,
+    part: str = "paper_online",
+    change: Callable[[CellConfig], CellConfig] = lambda config: config,
 ) -> tuple[Cell, Watcher, ManualClock]:
     clock = ManualClock()
-    config = load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / f"{part}.yaml")
+    config = change(load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / f"{part}.yaml"))
     cell = Cell(config, controller, clock, np.random.default_rng(seed))
     watcher = Watcher()
     cell.follow(watcher)
@@ -226,6 +229,38 @@ def test_a_part_off_its_place_is_felt_and_led_back_out(monkeypatch: pytest.Monke
     growth = np.abs(np.diff(watcher.force, axis=0)).max(axis=0)
     inside = watcher.force[np.array(watcher.depths[: len(watcher.forces)]) > -250e-6]
     assert (np.abs(inside).max(axis=0) <= LIMITS_N + growth).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("bias_N", [(0.080, -0.007, 0.030), (0.012, -0.007, 1.500)])
+def test_any_bias_of_the_sensor_is_taken_before_the_force_counts(bias_N: Vector3) -> None:
+    """Beyond the limits of 70 and 1000 mN, with nothing touching."""
+
+    def biased(config: CellConfig) -> CellConfig:
+        settings = config.force_sensor.settings.model_copy(update={"bias_N": bias_N})
+        return replace(config, force_sensor=replace(config.force_sensor, settings=settings))
+
+    cell, watcher, _ = make_cell(change=biased)
+    assert cell.insert_part(1).phase is SkillPhase.DONE
+    assert max(watcher.severities) < Severity.HOLD
+
+
+def test_a_cell_that_does_not_become_calm_says_what_holds_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell, _, clock = make_cell()
+
+    def read(sensor: MockForceSensor, timeout_s: float) -> None:
+        clock.sleep_until_ns(clock.now_ns() + round(timeout_s * 1e9))
+        raise DeviceTimeoutError("unplugged")
+
+    monkeypatch.setattr(MockForceSensor, "read", read)
+    with pytest.raises(DeviceTimeoutError) as caught:
+        cell.insert_part(1)
+    assert str(caught.value) == (
+        "the cell does not become calm (waited 1 s); missing data: no force sample yet; "
+        "missing data: no force estimate yet"
+    )
 
 
 def test_every_proposal_is_answered_and_tied_by_its_number() -> None:
