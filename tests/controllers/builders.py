@@ -47,7 +47,7 @@ LIMITS = Limits.model_validate(
         "clear_depth_um": -100.0,
         "arm_tolerance_um": 5.0,
         "force_limit_mN": (70.0, 100.0, 1000.0),
-        "force_rate_limit_N_s": 100.0,
+        "force_rate_limit_N_s": 40.0,
         "gentle_force_mN": 44.0,
         "impulse_limit_mN_s": 10.0,
         "sample_age_limit_ms": 5.0,

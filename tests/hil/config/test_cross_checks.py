@@ -23,7 +23,7 @@ def changed(*changes: tuple[str, str, object]) -> Files:
         ("step_box_um", [20, 20, 61], "[20, 20, 61]", "[20, 20, 60]"),
         ("force_limit_mN", [71, 100, 1000], "[71, 100, 1000]", "[70, 100, 1000]"),
         ("force_limit_mN", [10, 101, 10], "[10, 101, 10]", "[70, 100, 1000]"),
-        ("force_rate_limit_N_s", 101, "101", "100"),
+        ("force_rate_limit_N_s", 41, "41", "40"),
         ("gentle_force_mN", 45, "45", "44"),
         ("impulse_limit_mN_s", 10.5, "10.5", "10"),
     ],
