@@ -4,27 +4,17 @@ Not modelled: backlash, hysteresis, minimum step, settling, coupling of the axes
 """
 
 import math
-from typing import Annotated
-
-from annotated_types import Gt, Le
-from pydantic import Field
 
 from drivers.contract.clock import Clock
 from drivers.contract.device_settings import StageSettings
 from drivers.contract.errors import CommandRefusedError, DeviceError
 from drivers.contract.messages import Pose, StageCommand, StageState
-from drivers.contract.settings import MILLI
 from drivers.mock_motion import Speeds, StraightMove
 from drivers.mock_world import MockWorld
 
 
 class MockStageSettings(StageSettings):
     """What the mock's stage is like."""
-
-    acceleration_m_s2: Annotated[float, Gt(0), Le(100_000), MILLI] = Field(
-        alias="acceleration_mm_s2"
-    )
-    """With which it starts and brakes."""
 
 
 class MockStage:
