@@ -9,7 +9,15 @@ import pytest
 from numpy.typing import NDArray
 
 from controllers.control_loop import Subscriber
-from controllers.messages import Observation, Proposal, Sent, Severity, SkillPhase, Tick
+from controllers.messages import (
+    Observation,
+    PhaseChange,
+    Proposal,
+    Sent,
+    Severity,
+    SkillPhase,
+    Tick,
+)
 from controllers.proportional import ProportionalController
 from drivers.contract.clock import ManualClock
 from drivers.contract.errors import (
@@ -18,7 +26,7 @@ from drivers.contract.errors import (
     DeviceTimeoutError,
     SafetyError,
 )
-from drivers.contract.messages import StageCommand, Vector3
+from drivers.contract.messages import Pose, StageCommand, Vector3
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
 from hil.cell import Cell
@@ -278,3 +286,51 @@ def test_every_proposal_is_answered_and_tied_by_its_number() -> None:
     cell.follow(Numbers())
     cell.insert_part(1)
     assert proposed == sent == list(range(1, len(sent) + 1))
+
+
+def lame(at_move: int, share: float) -> Callable[..., StageCommand]:
+    """A stage that from a move on accepts every step and makes only a share of its way."""
+    move_to, moves = MockStage.move_to, 0
+
+    def move(stage: MockStage, target: Pose, *speeds: float) -> StageCommand:
+        nonlocal moves
+        moves += 1
+        if moves >= at_move:
+            start = stage.state().pose
+            x, y, z = (
+                s + share * (t - s) for s, t in zip(start.position, target.position, strict=True)
+            )
+            target = Pose((x, y, z), start.rotation)
+        return move_to(stage, target, *speeds)
+
+    return move
+
+
+@pytest.mark.parametrize(("at_move", "phase"), [(1, "approach"), (10, "insert"), (60, "done")])
+def test_a_stage_that_accepts_steps_but_does_not_move_ends_the_run(
+    at_move: int, phase: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the way in, inside the part, and on the way out: after five steps."""
+    cell, _, _ = make_cell()
+    phases: list[str] = []
+    sent: list[Sent] = []
+
+    class Keeper(Subscriber):
+        def on_phase(self, change: PhaseChange) -> None:
+            phases.append(change.phase)
+
+        def on_sent(self, answer: Sent) -> None:
+            sent.append(answer)
+
+    cell.follow(Keeper())
+    monkeypatch.setattr(MockStage, "move_to", lame(at_move, 0.09))
+    with pytest.raises(DeviceError, match="the stage has not followed 5 steps in a row"):
+        cell.insert_part(1)
+    assert phases[-1] == phase
+    assert len(sent) == at_move + 4
+
+
+def test_a_stage_that_falls_short_is_followed_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    cell, _, _ = make_cell()
+    monkeypatch.setattr(MockStage, "move_to", lame(1, 0.5))
+    assert cell.insert_part(1).phase is SkillPhase.DONE
