@@ -14,6 +14,7 @@ from controllers.messages import (
     Observation,
     PhaseChange,
     Proposal,
+    ResetRecord,
     Sent,
     Severity,
     SkillPhase,
@@ -67,6 +68,9 @@ class Subscriber:
 
     def on_phase(self, change: PhaseChange) -> None:
         """An insertion has entered a phase."""
+
+    def on_reset(self, record: ResetRecord) -> None:
+        """An operator has cleared the latched stops."""
 
 
 class ControlLoop:
@@ -170,6 +174,13 @@ class ControlLoop:
             refusals = refusals + 1 if step.sent.target is None else 0
             tick = step.tick
         return False
+
+    def reset(self, operator: str) -> ResetRecord:
+        """Clear the latched stops on an operator's word; a cause that persists latches again."""
+        record = self._gate.reset(operator, self._clock.now_ns())
+        for subscriber in self._subscribers:
+            subscriber.on_reset(record)
+        return record
 
     def step(self, tick: Tick, observation: Observation, translation: Vector3, source: str) -> Step:
         """Propose a step on the newest tick, have it sent, and turn until the stage has settled.

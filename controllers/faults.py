@@ -83,6 +83,10 @@ def time_faults(limits: Limits, memory: Memory, snapshot: Snapshot) -> list[Reas
             reasons.append(Reason(Rule.MISSING_DATA, Severity.HOLD, f"no {name} yet"))
         elif not 0.0 <= (age_s := (now_ns - message.stamp_ns) * 1e-9) <= limit_s:
             reasons.append(too_old(rule, f"age of the {name}", age_s, limit_s))
+    sample, load = snapshot.sample, memory.load
+    if sample is not None and load is not None and sample.stamp_ns < load.stamp_ns:
+        detail = f"stamped {(load.stamp_ns - sample.stamp_ns) * 1e-6:.3f} ms before the last one"
+        reasons.append(Reason(Rule.STALE_SAMPLE, Severity.HOLD, detail))
     return reasons
 
 
@@ -186,10 +190,18 @@ def outside(limits: Limits, pose: Pose, tolerance_m: float) -> str:
 
 
 def arm_away(limits: Limits, hold_pose: Pose, pose: Pose) -> str:
-    """Return in words how far the arm is from where it must hold the part, or nothing."""
+    """Return in words how far the arm is from where it must hold the part, or nothing.
+
+    A turn counts with the longest lever, as the farthest contact is moved by it.
+    """
     distance = math.dist(pose.position, hold_pose.position)
-    if distance > limits.arm_tolerance_m:
-        return f"arm {distance * 1e6:.1f} um from where it holds the part"
+    turns = zip(pose.rotation, hold_pose.rotation, strict=True)
+    angle = math.hypot(*(math.remainder(there - held, math.tau) for there, held in turns))
+    if distance + limits.lever_m * angle > limits.arm_tolerance_m:
+        return (
+            f"arm {distance * 1e6:.1f} um and {math.degrees(angle):.3f} deg "
+            "from where it holds the part"
+        )
     return ""
 
 

@@ -81,7 +81,7 @@ class Gate:
             self._halt_what_moves(snapshot)
         elif running is not None and severity is Severity.REDUCE:
             self._running = replace(running, speed_m_s=verdict.speed_cap_m_s)
-            self._stage.slow_to(*_stage_speeds(running.travel, verdict.speed_cap_m_s))
+            self._stage.slow_to(*self._speeds(running.travel, verdict.speed_cap_m_s))
         return verdict
 
     def send_step(self, proposal: Proposal, snapshot: Snapshot, now_ns: int) -> Sent:
@@ -97,7 +97,7 @@ class Gate:
             return Sent(now_ns, proposal.number, verdict, None)
         target = displaced(snapshot.stage.pose, step)
         if any((*step.translation, *step.rotation)):
-            speeds = _stage_speeds(step.travel, step.speed_m_s)
+            speeds = self._speeds(step.travel, step.speed_m_s)
             self._stage_sent_ns = now_ns
             self._stage_sent_ns = self._stage.move_to(target, *speeds).stamp_ns
             self._running = RunningMove(step.travel, step.leads_out, step.speed_m_s)
@@ -183,8 +183,11 @@ class Gate:
                 f"valid: at most {self.limits.clear_depth_m * 1e6:.1f} um"
             )
 
+    def _speeds(self, travel: Travel, speed_m_s: float) -> tuple[float, float]:
+        """Return linear [m/s] and angular [rad/s] speed of a move along `travel` at `speed_m_s`.
 
-def _stage_speeds(travel: Travel, speed_m_s: float) -> tuple[float, float]:
-    """Return linear [m/s] and angular [rad/s] speed of a move along `travel` at `speed_m_s`."""
-    share = min(1.0, travel.linear_m / travel.length_m)
-    return speed_m_s * share, speed_m_s / travel.length_m * travel.angle_rad
+        Rounding lifts neither above what `speed_m_s` was derived from.
+        """
+        share = min(1.0, travel.linear_m / travel.length_m)
+        turning = speed_m_s / travel.length_m * travel.angle_rad
+        return speed_m_s * share, min(turning, self.limits.angular_speed_rad_s)

@@ -94,7 +94,10 @@ def watch(
         if cap < GOVERNOR_DEADBAND * running.speed_m_s:
             detail = f"{running.speed_m_s * 1e3:.2f} mm/s lowered to {cap * 1e3:.2f} mm/s"
             reasons.append(Reason(Rule.GOVERNOR, Severity.REDUCE, detail))
-    memory = Memory(snapshot.now_ns, load or memory.load, memory.latched)
+    before = memory.load
+    if load is None or (before is not None and load.stamp_ns < before.stamp_ns):
+        load = before
+    memory = Memory(snapshot.now_ns, load, memory.latched)
     if reasons:
         memory = latch(memory, reasons)
         reasons = [reason for reason in reasons if reason.severity is not Severity.STOP]
@@ -199,8 +202,9 @@ def _refused_by_state(
             yield Reason(Rule.KEEP_OUT, Severity.HOLD, detail)
         elif arm.moving:
             yield Reason(Rule.KEEP_OUT, Severity.HOLD, "arm moving")
-        if not gripper.part_held:
-            yield Reason(Rule.VACUUM, Severity.HOLD, "no part held")
+        if not (gripper.valve_open and gripper.part_held):
+            detail = "no part held" if gripper.valve_open else "valve closed"
+            yield Reason(Rule.VACUUM, Severity.HOLD, detail)
         if estimate.health & FilterHealth.UNTARED:
             yield Reason(Rule.UNTARED, Severity.HOLD, "take the bias first")
 

@@ -16,7 +16,7 @@ from controllers.control_loop import ControlLoop, Subscriber
 from controllers.force_filter import ForceFilter
 from controllers.gate import Gate
 from controllers.insertion import InsertionSkill
-from controllers.messages import Severity, SkillPhase, Tick
+from controllers.messages import ResetRecord, Severity, SkillPhase, Tick
 from controllers.proportional import ProportionalController
 from drivers.backends import DeviceClass, device_class
 from drivers.contract.clock import Clock
@@ -132,6 +132,14 @@ class Cell:
         self._gate.hold()
         self._turn_until(_at_rest, _REST_TIMEOUT_S, "stage and arm do not come to rest")
         self._loop.wait(_CALM_S)
+
+    def reset(self, operator: str) -> ResetRecord:
+        """Clear the latched stops on an operator's word, and tell the subscribers.
+
+        Whether part and cell are in order only a person can see; a cause that persists latches
+        again.
+        """
+        return self._loop.reset(operator)
 
     def close(self) -> None:
         """Halt what moves and close the devices; one that fails does not keep the others open."""

@@ -261,8 +261,11 @@ def test_without_data_the_standing_hold_refuses(missing: str) -> None:
 GOING_IN: list[tuple[dict[str, Any], Rule]] = [
     ({"estimate": estimate(health=FilterHealth.UNTARED)}, Rule.UNTARED),
     ({"gripper": gripper(part_held=False)}, Rule.VACUUM),
+    ({"gripper": gripper(valve_open=False)}, Rule.VACUUM),
+    ({"gripper": gripper(valve_open=False, part_held=False)}, Rule.VACUUM),
     ({"arm": arm(moving=True)}, Rule.KEEP_OUT),
     ({"arm": arm(pose=Pose((5.1e-6, 0.0, 0.0)))}, Rule.KEEP_OUT),
+    ({"arm": arm(pose=Pose((0.0, 0.0, 0.0), (0.5, 0.0, 0.0)))}, Rule.KEEP_OUT),
 ]
 
 

@@ -7,8 +7,11 @@ import pytest
 
 from controllers.faults import Load, Memory
 from controllers.messages import FilterHealth, Rule, Severity
-from drivers.contract.messages import Pose, SensorStatus
+from controllers.supervisor import watch
+from drivers.contract.messages import Pose, SensorStatus, Vector3
 from tests.controllers.builders import (
+    HOLD_POSE,
+    LIMITS,
     MS,
     NOT_FINITE,
     NOW,
@@ -533,3 +536,58 @@ def test_taking_the_bias_is_no_growth_of_the_force() -> None:
     verdict, memory = watched(before, sample=BIASED, bias=BIASED.wrench)
     assert verdict.reasons == ()
     assert memory.load == Load(NOW, BIASED.wrench[:3], (0.0, 0.0, 0.0), 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "y_um", "stops"),
+    [
+        # 5 um on a lever of 4 mm are 1.25 mrad
+        ((1.249e-3, 0.0, 0.0), 0.0, False),
+        ((1.251e-3, 0.0, 0.0), 0.0, True),
+        ((0.0, -1.251e-3, 0.0), 0.0, True),
+        ((0.0, 0.0, 1.251e-3), 0.0, True),
+        ((0.0, 0.75e-3, -1.0e-3), 0.01, True),
+        ((0.5e-3, 0.0, 0.0), 2.99, False),
+        ((0.5e-3, 0.0, 0.0), 3.01, True),
+        ((0.5, 0.0, 0.0), 0.0, True),
+        ((2.0 * math.pi, -4.0 * math.pi, 1e-3), 0.0, False),
+    ],
+)
+def test_a_turn_of_the_arm_counts_with_the_lever(
+    rotation: Vector3, y_um: float, stops: bool
+) -> None:
+    turned = arm(pose=Pose((0.0, y_um * 1e-6, 0.0), rotation))
+    assert fires(Rule.KEEP_OUT, Severity.STOP, arm=turned) is stops
+
+
+def test_the_turn_of_the_arm_is_told_and_taken_from_its_hold_pose() -> None:
+    turned = snapshot(arm=arm(pose=Pose((0.0, 3e-6, 4e-6), (0.0, math.radians(0.5), 0.0))))
+    verdict, _ = watch(LIMITS, HOLD_POSE, Memory(), turned, None)
+    assert [str(r) for r in verdict.reasons] == [
+        "arm and stage keep-out: stage in the part, "
+        "arm 5.0 um and 0.500 deg from where it holds the part"
+    ]
+    held_there = Pose((0.0, 3e-6, 4e-6), (0.0, math.radians(0.5), 0.0))
+    verdict, _ = watch(LIMITS, held_there, Memory(), turned, None)
+    assert verdict.reasons == ()
+
+
+def test_a_sample_from_before_the_last_one_holds_until_time_goes_on() -> None:
+    _, memory = watched(sample=sample((0.010, 0.0, 0.0)))
+    kept = memory.load
+    for ms, stamp_ms, holds in ((1, -2, True), (2, -1, True), (3, 0, False), (4, 4, False)):
+        now = NOW + ms * MS
+        verdict, memory = watched(
+            memory,
+            now_ns=now,
+            sample=sample((0.011, 0.0, 0.0), stamp_ns=NOW + stamp_ms * MS),
+            stage=stage(stamp_ns=now),
+            arm=arm(stamp_ns=now),
+            gripper=gripper(stamp_ns=now),
+        )
+        told = [str(r) for r in verdict.reasons]
+        assert told == (
+            [f"stale force sample: stamped {-stamp_ms}.000 ms before the last one"] * holds
+        )
+        assert verdict.severity is (Severity.HOLD if holds else Severity.PASS)
+        assert (memory.load == kept) is holds

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from controllers.messages import (
     Observation,
     PhaseChange,
     Proposal,
+    ResetRecord,
+    Rule,
     Sent,
     Severity,
     SkillPhase,
@@ -26,7 +29,7 @@ from drivers.contract.errors import (
     DeviceTimeoutError,
     SafetyError,
 )
-from drivers.contract.messages import Pose, StageCommand, Vector3
+from drivers.contract.messages import ForceSample, Pose, StageCommand, Vector3
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
 from hil.cell import Cell
@@ -191,6 +194,34 @@ def test_after_a_stop_nothing_more_is_done_until_a_reset() -> None:
     cell.insert_part(1)
     with pytest.raises(SafetyError, match="vacuum lost"):
         cell.insert_part(2)
+
+
+def test_an_operators_reset_is_told_and_clears_the_stop() -> None:
+    """Force beyond the limit once, clear of the part; then the same cell inserts."""
+    cell, _, clock = make_cell()
+    records: list[ResetRecord] = []
+
+    class Resets(Subscriber):
+        def on_reset(self, record: ResetRecord) -> None:
+            records.append(record)
+
+    cell.follow(Resets())
+    assert cell.insert_part(1).is_clear
+    sensor = cast(MockForceSensor, cell._devices[0])
+    read = sensor.read
+
+    def pushed(timeout_s: float) -> ForceSample:
+        sensor.read = read  # type: ignore[method-assign]
+        return read(timeout_s)._replace(wrench=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+
+    sensor.read = pushed  # type: ignore[method-assign]
+    for _ in range(2):
+        with pytest.raises(SafetyError, match="force limit: f_x = "):
+            cell.insert_part(2)
+    assert cell.reset("A. Operator") is records[0]
+    assert (records[0].operator, records[0].stamp_ns) == ("A. Operator", clock.now_ns())
+    assert [reason.rule for reason in records[0].cleared] == [Rule.FORCE]
+    assert cell.insert_part(2).phase is SkillPhase.DONE
 
 
 def test_a_device_that_fails_ends_the_run_and_the_cell_is_held(
