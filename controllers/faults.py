@@ -115,10 +115,12 @@ def load_faults(limits: Limits, snapshot: Snapshot, load: Load) -> list[Reason]:
 
 def _reads_bias_alone(limits: Limits, snapshot: Snapshot) -> bool:
     estimate, stage = snapshot.estimate, snapshot.stage
-    if estimate is None or estimate.health is FilterHealth.OK or stage is None:
-        return False
-    untared = bool(estimate.health & FilterHealth.UNTARED)
-    return untared and stage.pose.position[2] <= limits.clear_depth_m
+    return (
+        estimate is not None
+        and stage is not None
+        and stage.pose.position[2] <= limits.clear_depth_m
+        and FilterHealth.UNTARED in estimate.health
+    )
 
 
 def sensing_faults(snapshot: Snapshot) -> list[Reason]:

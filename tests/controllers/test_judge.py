@@ -293,6 +293,12 @@ def test_conditions_for_going_in(
         assert verdict.severity is Severity.HOLD
 
 
+@pytest.mark.parametrize(("is_open", "text"), [(True, "no part held"), (False, "valve closed")])
+def test_what_is_wrong_with_the_vacuum_is_told(is_open: bool, text: str) -> None:
+    verdict, _ = judged(proposal(), gripper=gripper(valve_open=is_open, part_held=not is_open))
+    assert [str(r) for r in verdict.reasons] == [f"vacuum lost: {text}"]
+
+
 def test_the_verdict_on_a_proposal_carries_the_standing_reasons() -> None:
     verdict, _ = judged(proposal((30e-6, 0.0, 0.0)), standing(Severity.REDUCE))
     assert rules(verdict) == {Rule.IMPULSE, Rule.STEP_BOX}
