@@ -197,8 +197,10 @@ def arm_away(limits: Limits, hold_pose: Pose, pose: Pose) -> str:
     A turn counts with the longest lever, as the farthest contact is moved by it.
     """
     distance = math.dist(pose.position, hold_pose.position)
-    turns = zip(pose.rotation, hold_pose.rotation, strict=True)
-    angle = math.hypot(*(math.remainder(there - held, math.tau) for there, held in turns))
+    (rx, ry, rz), (hx, hy, hz), turn = pose.rotation, hold_pose.rotation, math.tau
+    angle = math.hypot(
+        math.remainder(rx - hx, turn), math.remainder(ry - hy, turn), math.remainder(rz - hz, turn)
+    )
     if distance + limits.lever_m * angle > limits.arm_tolerance_m:
         return (
             f"arm {distance * 1e6:.1f} um and {math.degrees(angle):.3f} deg "
