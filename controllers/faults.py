@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from controllers.limits import Limits
 from controllers.messages import FilterHealth, Reason, Rule, Severity, Snapshot
-from drivers.contract.messages import Pose, SensorStatus, Vector3
+from drivers.contract.messages import Pose, SensorStatus, StageState, Vector3
 
 SPEED_TOLERANCE = 1.02
 """A measured speed may exceed the commanded limit by the stage's own velocity ripple."""
@@ -36,6 +36,7 @@ class Memory(NamedTuple):
     now_ns: int | None = None
     load: Load | None = None
     latched: tuple[Reason, ...] = ()
+    stage: StageState | None = None
 
 
 def finite(*groups: Sequence[float]) -> bool:
@@ -145,7 +146,9 @@ def sensing_faults(snapshot: Snapshot) -> list[Reason]:
     return reasons
 
 
-def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[Reason]:
+def motion_faults(
+    limits: Limits, hold_pose: Pose, memory: Memory, snapshot: Snapshot
+) -> list[Reason]:
     """Measured speed and place of the stage, and whether arm and gripper keep the part in place."""
     stage, arm, gripper = snapshot.stage, snapshot.arm, snapshot.gripper
     if stage is None or arm is None or gripper is None:
@@ -164,6 +167,8 @@ def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[R
         limit_deg = math.degrees(limits.angular_speed_rad_s)
         detail = f"stage at {math.degrees(turning):.3f} deg/s, limit {limit_deg:.3f} deg/s"
         reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
+    if memory.stage is not None and (detail := _leap(limits, memory.stage, pose, snapshot.now_ns)):
+        reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
     if detail := outside(limits, pose, POSITION_TOLERANCE_M):
         reasons.append(Reason(Rule.WORKSPACE, Severity.STOP, detail))
     if pose.position[2] > limits.clear_depth_m:
@@ -174,6 +179,25 @@ def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[R
         if gripper.valve_open and not gripper.part_held:
             reasons.append(Reason(Rule.VACUUM, Severity.STOP, "stage in the part, part not held"))
     return reasons
+
+
+def _leap(limits: Limits, before: StageState, pose: Pose, now_ns: int) -> str:
+    """Return in words how the stage is where it cannot be by now, or nothing.
+
+    A step is sent relative to the reported place: were that wrong, the stage would go far.
+    """
+    time_s = max(0.0, (now_ns - before.stamp_ns) * 1e-9) * SPEED_TOLERANCE
+    way = math.dist(pose.position, before.pose.position)
+    turn = math.dist(pose.rotation, before.pose.rotation)
+    if (
+        way > limits.speed_m_s * time_s + POSITION_TOLERANCE_M
+        or turn > limits.angular_speed_rad_s * time_s + POSITION_TOLERANCE_M / limits.lever_m
+    ):
+        return (
+            f"stage displaced by {way * 1e6:.1f} um and {math.degrees(turn):.4f} deg, "
+            "faster than its limit"
+        )
+    return ""
 
 
 def outside(limits: Limits, pose: Pose, tolerance_m: float) -> str:

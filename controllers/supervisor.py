@@ -87,7 +87,7 @@ def watch(
     if load is not None:
         reasons += load_faults(limits, snapshot, load)
     reasons += sensing_faults(snapshot)
-    reasons += motion_faults(limits, hold_pose, snapshot)
+    reasons += motion_faults(limits, hold_pose, memory, snapshot)
     cap = math.inf
     if running is not None:
         cap = governed_speed(limits, load, snapshot.estimate, running.travel)
@@ -97,7 +97,8 @@ def watch(
     before = memory.load
     if load is None or (before is not None and load.stamp_ns < before.stamp_ns):
         load = before
-    memory = Memory(snapshot.now_ns, load, memory.latched)
+    seen_stage = snapshot.stage or memory.stage
+    memory = Memory(snapshot.now_ns, load, memory.latched, seen_stage)
     if reasons:
         memory = latch(memory, reasons)
         reasons = [reason for reason in reasons if reason.severity is not Severity.STOP]

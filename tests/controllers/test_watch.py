@@ -567,8 +567,8 @@ def test_the_turn_of_the_arm_is_told_and_taken_from_its_hold_pose() -> None:
         "arm and stage keep-out: stage in the part, "
         "arm 5.0 um and 0.500 deg from where it holds the part"
     ]
-    held_there = Pose((0.0, 3e-6, 4e-6), (0.0, math.radians(0.5), 0.0))
-    verdict, _ = watch(LIMITS, held_there, Memory(), turned, None)
+    aslant = Pose((1.0, 2.0, 3.0), (0.3, -0.5, 0.7))
+    verdict, _ = watch(LIMITS, aslant, Memory(), snapshot(arm=arm(pose=aslant)), None)
     assert verdict.reasons == ()
 
 
@@ -591,3 +591,63 @@ def test_a_sample_from_before_the_last_one_holds_until_time_goes_on() -> None:
         )
         assert verdict.severity is (Severity.HOLD if holds else Severity.PASS)
         assert (memory.load == kept) is holds
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(
+    ("way_um", "turn_mrad", "stops"),
+    [
+        # 4 ms at 5.1 mm/s and 1 um; 4 ms at 1.02 deg/s and 0.25 mrad
+        (21.39, 0.0, False),
+        (21.41, 0.0, True),
+        (1000.0, 0.0, True),
+        (0.0, 0.3211, False),
+        (0.0, 0.3213, True),
+    ],
+)
+def test_a_stage_that_is_where_it_cannot_be_yet_stops(
+    axis: int, sign: float, way_um: float, turn_mrad: float, stops: bool
+) -> None:
+    """Whatever speed it reports; time counts from its state before to now."""
+    position, rotation = [0.0, 0.0, 1e-3], [0.0, 0.0, 0.0]
+    position[axis] += sign * way_um * 1e-6
+    rotation[axis] = sign * turn_mrad * 1e-3
+    before = Memory(NOW - MS, stage=stage(stamp_ns=NOW - 4 * MS))
+    there = Pose((position[0], position[1], position[2]), (rotation[0], rotation[1], rotation[2]))
+    seen = stage(pose=there, stamp_ns=NOW - 2 * MS)
+    assert fires(Rule.SPEED, Severity.STOP, memory=before, stage=seen) is stops
+
+
+@pytest.mark.parametrize(
+    ("there", "stops"),
+    [
+        (Pose((1e-6, 0.0, 0.0)), False),
+        (Pose((up(1e-6), 0.0, 0.0)), True),
+        (Pose((0.0, 0.0, 0.0), (0.0, 1e-6 / 4e-3, 0.0)), False),
+        (Pose((0.0, 0.0, 0.0), (0.0, up(1e-6 / 4e-3), 0.0)), True),
+    ],
+)
+def test_a_leap_at_its_limit(there: Pose, stops: bool) -> None:
+    before = Memory(NOW - MS, stage=stage(pose=Pose()))
+    assert fires(Rule.SPEED, Severity.STOP, memory=before, stage=stage(pose=there)) is stops
+
+
+def test_a_leap_of_the_stage_is_told() -> None:
+    before = Memory(NOW - MS, stage=stage(stamp_ns=NOW - MS))
+    verdict, memory = watched(before, stage=stage(2e-3))
+    assert [str(r) for r in verdict.reasons] == [
+        "speed limit: stage displaced by 1000.0 um and 0.0000 deg, faster than its limit"
+    ]
+    assert memory.stage == stage(2e-3)
+
+
+def test_the_last_place_of_the_stage_outlasts_a_missing_state() -> None:
+    _, memory = watched(Memory(NOW - MS, stage=stage(stamp_ns=NOW - MS)), stage=None)
+    assert memory.stage == stage(stamp_ns=NOW - MS)
+
+
+def test_a_state_from_the_future_makes_no_way_of_its_own() -> None:
+    """A second ahead is too far for a state to be believed, but the stage has not moved."""
+    before = Memory(NOW - MS, stage=stage(stamp_ns=NOW + 1000 * MS))
+    assert not fires(Rule.SPEED, Severity.STOP, memory=before)
