@@ -167,7 +167,12 @@ def motion_faults(
         limit_deg = math.degrees(limits.angular_speed_rad_s)
         detail = f"stage at {math.degrees(turning):.3f} deg/s, limit {limit_deg:.3f} deg/s"
         reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
-    if memory.stage is not None and (detail := _leap(limits, memory.stage, pose, snapshot.now_ns)):
+    before = memory.stage
+    if (
+        before is not None
+        and before.pose is not pose
+        and (detail := _leap(limits, before, pose, snapshot.now_ns))
+    ):
         reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
     if detail := outside(limits, pose, POSITION_TOLERANCE_M):
         reasons.append(Reason(Rule.WORKSPACE, Severity.STOP, detail))
