@@ -3,6 +3,7 @@
 The cell and the learning environment both run this loop, so they cannot drift apart.
 """
 
+import math
 from dataclasses import dataclass
 
 from controllers.force_filter import ForceFilter
@@ -13,6 +14,7 @@ from controllers.messages import (
     Observation,
     PhaseChange,
     Proposal,
+    ResetRecord,
     Sent,
     Severity,
     SkillPhase,
@@ -32,6 +34,10 @@ _TICKS_BETWEEN_TRIES = 50
 """Under a hold a controller is asked again at most every so many samples."""
 _WITHDRAW_REFUSALS = 20
 """So many refusals in a row end a withdrawal."""
+_LAME_STEPS = 5
+"""So many sent steps in a row without progress end the run: the stage does not follow."""
+_PROGRESS = 0.1
+"""A step has made progress once so much of its way is behind the stage."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +69,9 @@ class Subscriber:
     def on_phase(self, change: PhaseChange) -> None:
         """An insertion has entered a phase."""
 
+    def on_reset(self, record: ResetRecord) -> None:
+        """An operator has cleared the latched stops."""
+
 
 class ControlLoop:
     """Turns once per force sample. The first thing to see a sample are the subscribers."""
@@ -84,6 +93,7 @@ class ControlLoop:
         self._timeout_s = _SILENT_PERIODS / sensor.rate_Hz
         self._sample: ForceSample | None = None
         self._proposals = 0
+        self._lame_steps = 0
 
     def follow(self, subscriber: Subscriber) -> None:
         """Let `subscriber` follow, after those before it."""
@@ -165,10 +175,18 @@ class ControlLoop:
             tick = step.tick
         return False
 
+    def reset(self, operator: str) -> ResetRecord:
+        """Clear the latched stops on an operator's word; a cause that persists latches again."""
+        record = self._gate.reset(operator, self._clock.now_ns())
+        for subscriber in self._subscribers:
+            subscriber.on_reset(record)
+        return record
+
     def step(self, tick: Tick, observation: Observation, translation: Vector3, source: str) -> Step:
         """Propose a step on the newest tick, have it sent, and turn until the stage has settled.
 
-        Raises DeviceTimeoutError if the stage does not come to rest.
+        Raises DeviceTimeoutError if the stage does not come to rest, and DeviceError if it has not
+        followed several steps in a row.
         """
         self._proposals += 1
         proposal = Proposal(observation.stamp_ns, self._proposals, source, translation)
@@ -177,7 +195,22 @@ class ControlLoop:
         sent = self._gate.send_step(proposal, tick.snapshot, self._clock.now_ns())
         for subscriber in self._subscribers:
             subscriber.on_sent(sent)
-        return self._wait_out(sent) if sent.target is None else self._settle(sent)
+        if sent.target is None:
+            return self._wait_out(sent)
+        step = self._settle(sent)
+        self._demand_progress(observation.pose, sent.target, step)
+        return step
+
+    def _demand_progress(self, start: Pose, target: Pose, step: Step) -> None:
+        if target == start:
+            return
+        end = _stage(step.tick).pose
+        has_moved = _comes_nearer(start.position, end.position, target.position)
+        has_turned = _comes_nearer(start.rotation, end.rotation, target.rotation)
+        self._lame_steps = 0 if has_moved or has_turned else self._lame_steps + 1
+        if self._lame_steps >= _LAME_STEPS:
+            reasons = "".join(f"; {reason}" for reason in step.hardest.reasons)
+            raise DeviceError(f"the stage has not followed {_LAME_STEPS} steps in a row{reasons}")
 
     def _wait_out(self, sent: Sent) -> Step:
         """After a refusal, turn until the hold is over or it is time to try again."""
@@ -218,6 +251,11 @@ def observe(tick: Tick, steps: int, origin: Pose) -> Observation:
         raise DeviceError("there is no force estimate yet")
     x, y, z = (p - o for p, o in zip(pose.position, origin.position, strict=True))
     return Observation(tick.start_ns, steps, estimate.wrench, estimate.std, pose, (x, y, z))
+
+
+def _comes_nearer(start: Vector3, end: Vector3, target: Vector3) -> bool:
+    way = math.dist(start, target)
+    return way > 0.0 and math.dist(end, target) <= (1.0 - _PROGRESS) * way
 
 
 def _stage(tick: Tick) -> StageState:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from controllers.limits import Limits
 from controllers.messages import FilterHealth, Reason, Rule, Severity, Snapshot
-from drivers.contract.messages import Pose, SensorStatus, Vector3
+from drivers.contract.messages import Pose, SensorStatus, StageState, Vector3
 
 SPEED_TOLERANCE = 1.02
 """A measured speed may exceed the commanded limit by the stage's own velocity ripple."""
@@ -17,11 +17,13 @@ _BLIND = FilterHealth.STUCK | FilterHealth.SILENT
 
 
 class Load(NamedTuple):
-    """What a raw sample says once the bias is off."""
+    """What a raw sample says of the force on the part."""
 
     stamp_ns: int
+    raw: Vector3
+    """With the bias [N]."""
     force: Vector3
-    """[N]"""
+    """Less the bias [N]."""
     rate_N_s: float
     """Fastest growth of any axis since the sample before."""
     impulse_N_s: float
@@ -34,6 +36,7 @@ class Memory(NamedTuple):
     now_ns: int | None = None
     load: Load | None = None
     latched: tuple[Reason, ...] = ()
+    stage: StageState | None = None
 
 
 def finite(*groups: Sequence[float]) -> bool:
@@ -46,18 +49,18 @@ def weigh(limits: Limits, memory: Memory, snapshot: Snapshot) -> Load | None:
     sample, bias = snapshot.sample, snapshot.bias
     if sample is None or not finite(sample.wrench, bias):
         return None
-    wrench = sample.wrench
-    x, y, z = wrench[0] - bias[0], wrench[1] - bias[1], wrench[2] - bias[2]
+    raw = sample.wrench[:3]
+    x, y, z = raw[0] - bias[0], raw[1] - bias[1], raw[2] - bias[2]
     before, dt_s = memory.load, 0.0
     if before is not None:
         dt_s = (sample.stamp_ns - before.stamp_ns) * 1e-9
     if before is None or dt_s <= 0.0:
-        return Load(sample.stamp_ns, (x, y, z), 0.0, before.impulse_N_s if before else 0.0)
-    bx, by, bz = before.force
-    rate = max(abs(x - bx), abs(y - by), abs(z - bz)) / dt_s
+        return Load(sample.stamp_ns, raw, (x, y, z), 0.0, before.impulse_N_s if before else 0.0)
+    bx, by, bz = before.raw
+    rate = max(abs(raw[0] - bx), abs(raw[1] - by), abs(raw[2] - bz)) / dt_s
     excess = math.hypot(x, y) - limits.gentle_force_N
     impulse = before.impulse_N_s + excess * dt_s if excess > 0.0 else 0.0
-    return Load(sample.stamp_ns, (x, y, z), rate, impulse)
+    return Load(sample.stamp_ns, raw, (x, y, z), rate, impulse)
 
 
 def time_faults(limits: Limits, memory: Memory, snapshot: Snapshot) -> list[Reason]:
@@ -81,24 +84,44 @@ def time_faults(limits: Limits, memory: Memory, snapshot: Snapshot) -> list[Reas
             reasons.append(Reason(Rule.MISSING_DATA, Severity.HOLD, f"no {name} yet"))
         elif not 0.0 <= (age_s := (now_ns - message.stamp_ns) * 1e-9) <= limit_s:
             reasons.append(too_old(rule, f"age of the {name}", age_s, limit_s))
+    sample, load = snapshot.sample, memory.load
+    if sample is not None and load is not None and sample.stamp_ns < load.stamp_ns:
+        detail = f"stamped {(load.stamp_ns - sample.stamp_ns) * 1e-6:.3f} ms before the last one"
+        reasons.append(Reason(Rule.STALE_SAMPLE, Severity.HOLD, detail))
     return reasons
 
 
-def load_faults(limits: Limits, load: Load) -> list[Reason]:
-    """Raw force, its growth and its impulse against their limits."""
+def load_faults(limits: Limits, snapshot: Snapshot, load: Load) -> list[Reason]:
+    """Raw force, its growth and its impulse against their limits.
+
+    Clear of the part and before the first tare, what the sensor reads is its bias, which may exceed
+    any limit: there only the growth counts.
+    """
     reasons = []
+    if load.rate_N_s > limits.force_rate_N_s:
+        detail = f"{load.rate_N_s:.1f} N/s, limit {limits.force_rate_N_s:.1f} N/s"
+        reasons.append(Reason(Rule.FORCE_RATE, Severity.HOLD, detail))
+    if _reads_bias_alone(limits, snapshot):
+        return reasons
     for axis, value, limit in zip("xyz", load.force, limits.force_N, strict=True):
         if abs(value) > limit:
             detail = f"f_{axis} = {value * 1e3:.1f} mN, limit {limit * 1e3:.1f} mN"
             reasons.append(Reason(Rule.FORCE, Severity.STOP, detail))
-    if load.rate_N_s > limits.force_rate_N_s:
-        detail = f"{load.rate_N_s:.1f} N/s, limit {limits.force_rate_N_s:.1f} N/s"
-        reasons.append(Reason(Rule.FORCE_RATE, Severity.HOLD, detail))
     if load.impulse_N_s > limits.impulse_N_s:
         limit_mN_s = limits.impulse_N_s * 1e3
         detail = f"{load.impulse_N_s * 1e3:.2f} mN s, limit {limit_mN_s:.2f} mN s"
         reasons.append(Reason(Rule.IMPULSE, Severity.RETREAT, detail))
     return reasons
+
+
+def _reads_bias_alone(limits: Limits, snapshot: Snapshot) -> bool:
+    estimate, stage = snapshot.estimate, snapshot.stage
+    return (
+        estimate is not None
+        and stage is not None
+        and stage.pose.position[2] <= limits.clear_depth_m
+        and FilterHealth.UNTARED in estimate.health
+    )
 
 
 def sensing_faults(snapshot: Snapshot) -> list[Reason]:
@@ -123,7 +146,9 @@ def sensing_faults(snapshot: Snapshot) -> list[Reason]:
     return reasons
 
 
-def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[Reason]:
+def motion_faults(
+    limits: Limits, hold_pose: Pose, memory: Memory, snapshot: Snapshot
+) -> list[Reason]:
     """Measured speed and place of the stage, and whether arm and gripper keep the part in place."""
     stage, arm, gripper = snapshot.stage, snapshot.arm, snapshot.gripper
     if stage is None or arm is None or gripper is None:
@@ -142,6 +167,13 @@ def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[R
         limit_deg = math.degrees(limits.angular_speed_rad_s)
         detail = f"stage at {math.degrees(turning):.3f} deg/s, limit {limit_deg:.3f} deg/s"
         reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
+    before = memory.stage
+    if (
+        before is not None
+        and before.pose is not pose
+        and (detail := _leap(limits, before, pose, snapshot.now_ns))
+    ):
+        reasons.append(Reason(Rule.SPEED, Severity.STOP, detail))
     if detail := outside(limits, pose, POSITION_TOLERANCE_M):
         reasons.append(Reason(Rule.WORKSPACE, Severity.STOP, detail))
     if pose.position[2] > limits.clear_depth_m:
@@ -152,6 +184,25 @@ def motion_faults(limits: Limits, hold_pose: Pose, snapshot: Snapshot) -> list[R
         if gripper.valve_open and not gripper.part_held:
             reasons.append(Reason(Rule.VACUUM, Severity.STOP, "stage in the part, part not held"))
     return reasons
+
+
+def _leap(limits: Limits, before: StageState, pose: Pose, now_ns: int) -> str:
+    """Return in words how the stage is where it cannot be by now, or nothing.
+
+    A step is sent relative to the reported place: were that wrong, the stage would go far.
+    """
+    time_s = max(0.0, (now_ns - before.stamp_ns) * 1e-9) * SPEED_TOLERANCE
+    way = math.dist(pose.position, before.pose.position)
+    turn = math.dist(pose.rotation, before.pose.rotation)
+    if (
+        way > limits.speed_m_s * time_s + POSITION_TOLERANCE_M
+        or turn > limits.angular_speed_rad_s * time_s + POSITION_TOLERANCE_M / limits.lever_m
+    ):
+        return (
+            f"stage displaced by {way * 1e6:.1f} um and {math.degrees(turn):.4f} deg, "
+            "faster than its limit"
+        )
+    return ""
 
 
 def outside(limits: Limits, pose: Pose, tolerance_m: float) -> str:
@@ -170,10 +221,20 @@ def outside(limits: Limits, pose: Pose, tolerance_m: float) -> str:
 
 
 def arm_away(limits: Limits, hold_pose: Pose, pose: Pose) -> str:
-    """Return in words how far the arm is from where it must hold the part, or nothing."""
+    """Return in words how far the arm is from where it must hold the part, or nothing.
+
+    A turn counts with the longest lever, as the farthest contact is moved by it.
+    """
     distance = math.dist(pose.position, hold_pose.position)
-    if distance > limits.arm_tolerance_m:
-        return f"arm {distance * 1e6:.1f} um from where it holds the part"
+    (rx, ry, rz), (hx, hy, hz), turn = pose.rotation, hold_pose.rotation, math.tau
+    angle = math.hypot(
+        math.remainder(rx - hx, turn), math.remainder(ry - hy, turn), math.remainder(rz - hz, turn)
+    )
+    if distance + limits.lever_m * angle > limits.arm_tolerance_m:
+        return (
+            f"arm {distance * 1e6:.1f} um and {math.degrees(angle):.3f} deg "
+            "from where it holds the part"
+        )
     return ""
 
 

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from controllers.messages import FilterHealth, ForceEstimate
+from controllers.repeats import Repeats
 from controllers.settings import FilterSettings
 from controllers.settled_filter import SettledFilter
 from drivers.contract.errors import TareRefusedError
 from drivers.contract.messages import ForceSample, SensorStatus, Wrench
 
 _AXES = 6
-_STUCK_SAMPLES = 3
 _SETTLED = 1e-6
 """Relative change of the variances, from one sample to the next, below which they are kept."""
 _UNKNOWN_RATE_STD = 10.0
@@ -52,7 +52,7 @@ class ForceFilter:
         self._std = _ZERO
         self._settled: SettledFilter | None = None
         self._last: ForceSample | None = None
-        self._repeats = 1
+        self._repeats = Repeats()
         self._rejections = 0
         self._nis = 0.0
         self._restart(np.zeros(_AXES))
@@ -66,7 +66,7 @@ class ForceFilter:
         """Take in one raw sample and return the estimate at its time."""
         last, self._last = self._last, sample
         wrench, stamp_ns = sample.wrench, sample.stamp_ns
-        self._repeats = self._repeats + 1 if last and last.wrench == wrench else 1
+        self._repeats.add(wrench)
         if not math.isfinite(sum(wrench)):
             self._nis = math.inf
             return self._estimate(stamp_ns, FilterHealth.REJECTED)
@@ -191,7 +191,7 @@ class ForceFilter:
         return _as_wrench(np.sqrt(np.diag(self._kalman.P)[:_AXES]))
 
     def _estimate(self, stamp_ns: int, health: FilterHealth) -> ForceEstimate:
-        if self._repeats >= _STUCK_SAMPLES:
+        if self._repeats.is_stuck:
             health |= FilterHealth.STUCK
         if self._bias is None:
             health |= FilterHealth.UNTARED

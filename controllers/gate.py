@@ -1,6 +1,7 @@
 """The gate: sole holder of the actuators. Nothing reaches them but through the supervisor.
 
-Every call returns what was really sent.
+A command rests on the snapshot that was watched last, and on no other command after it: each one
+changes what the verdict on that snapshot was about.
 """
 
 import math
@@ -14,7 +15,6 @@ from controllers.messages import (
     Proposal,
     Reason,
     ResetRecord,
-    Rule,
     Sent,
     Severity,
     Snapshot,
@@ -40,10 +40,10 @@ class Gate:
         self._gripper = gripper
         self._memory = Memory()
         self._running: RunningMove | None = None
+        self._stage_sent_ns = 0
         self._arm_sent_ns = 0
-        self._standing = Verdict(
-            0, (Reason(Rule.MISSING_DATA, Severity.HOLD, "nothing has been watched yet"),)
-        )
+        self._watched: tuple[Snapshot, Verdict] | None = None
+        """What the next command may rest on; nothing once a command has been given."""
 
     @property
     def latched(self) -> tuple[Reason, ...]:
@@ -62,7 +62,7 @@ class Gate:
         A state from before the last command counts as moving.
         """
         stage, arm, gripper = self._stage.state(), self._arm.state(), self._gripper.state()
-        if self._running is not None and stage.stamp_ns < self._running.stamp_ns:
+        if stage.stamp_ns < self._stage_sent_ns:
             stage = stage._replace(moving=True)
         if arm.stamp_ns < self._arm_sent_ns:
             arm = arm._replace(moving=True)
@@ -74,31 +74,33 @@ class Gate:
             self._running = None
         running = self._running
         verdict, self._memory = watch(self.limits, self._hold_pose, self._memory, snapshot, running)
-        self._standing = verdict
+        self._watched = snapshot, verdict
         severity = verdict.severity
-        leaving = severity is Severity.RETREAT and running is not None and running.retreats
+        leaving = severity is Severity.RETREAT and running is not None and running.leads_out
         if severity >= Severity.HOLD and not leaving:
             self._halt_what_moves(snapshot)
         elif running is not None and severity is Severity.REDUCE:
             self._running = replace(running, speed_m_s=verdict.speed_cap_m_s)
-            self._stage.slow_to(*_stage_speeds(running.travel, verdict.speed_cap_m_s))
+            self._stage.slow_to(*self._speeds(running.travel, verdict.speed_cap_m_s))
         return verdict
 
     def send_step(self, proposal: Proposal, snapshot: Snapshot, now_ns: int) -> Sent:
-        """Judge a step proposed on the snapshot last watched, and send what is allowed of it."""
-        self._demand_watched(snapshot)
-        verdict, step = judge(
-            self.limits, self._hold_pose, self._standing, snapshot, proposal, now_ns
-        )
+        """Judge a step proposed on the snapshot last watched, and send what is allowed of it.
+
+        Sent or refused, the step uses the snapshot up: the next command needs a new one.
+        """
+        standing = self._standing(snapshot)
+        self._watched = None
+        verdict, step = judge(self.limits, self._hold_pose, standing, snapshot, proposal, now_ns)
         self._memory = latch(self._memory, verdict.reasons)
         if step is None or snapshot.stage is None:
             return Sent(now_ns, proposal.number, verdict, None)
         target = displaced(snapshot.stage.pose, step)
         if any((*step.translation, *step.rotation)):
-            speeds = _stage_speeds(step.travel, step.speed_m_s)
-            command = self._stage.move_to(target, *speeds)
-            retreats = step.translation[2] < 0.0
-            self._running = RunningMove(command.stamp_ns, step.travel, retreats, step.speed_m_s)
+            speeds = self._speeds(step.travel, step.speed_m_s)
+            self._stage_sent_ns = now_ns
+            self._stage_sent_ns = self._stage.move_to(target, *speeds).stamp_ns
+            self._running = RunningMove(step.travel, step.leads_out, step.speed_m_s)
         return Sent(
             now_ns,
             proposal.number,
@@ -118,8 +120,9 @@ class Gate:
             raise SafetyError(f"arm target {target} is not finite")
         self._demand_calm(snapshot)
         self._demand_clear(snapshot)
-        self._arm.move_to(target, self.limits.arm_speed_m_s)
+        self._watched = None
         self._arm_sent_ns = snapshot.now_ns
+        self._arm.move_to(target, self.limits.arm_speed_m_s)
 
     def send_valve(self, is_open: bool, snapshot: Snapshot) -> None:
         """Open or close the vacuum valve; only while nothing moves.
@@ -130,10 +133,12 @@ class Gate:
         self._demand_calm(snapshot)
         if is_open:
             self._demand_clear(snapshot)
+        self._watched = None
         self._gripper.set_valve(is_open)
 
     def hold(self) -> None:
         """Halt stage and arm, whatever they do; the part stays held."""
+        self._watched = None
         self._running = None
         try:
             self._stage.halt()
@@ -153,17 +158,19 @@ class Gate:
         if snapshot.arm is None or snapshot.arm.moving:
             self._arm.halt()
 
-    def _demand_watched(self, snapshot: Snapshot) -> None:
-        if self._standing.stamp_ns != snapshot.now_ns:
+    def _standing(self, snapshot: Snapshot) -> Verdict:
+        """Return the verdict on `snapshot`; raises SafetyError if it may not be acted on."""
+        if self._watched is None or self._watched[0] is not snapshot:
             raise SafetyError(
-                f"the snapshot of {snapshot.now_ns} ns has not been watched; "
-                f"the last one watched is of {self._standing.stamp_ns} ns"
+                f"the snapshot of {snapshot.now_ns} ns is not the last one watched, "
+                "or a command has been given on it"
             )
+        return self._watched[1]
 
     def _demand_calm(self, snapshot: Snapshot) -> None:
-        self._demand_watched(snapshot)
-        if self._standing.severity >= Severity.HOLD:
-            raise SafetyError("; ".join(str(reason) for reason in self._standing.reasons))
+        standing = self._standing(snapshot)
+        if standing.severity >= Severity.HOLD:
+            raise SafetyError("; ".join(str(reason) for reason in standing.reasons))
         for device in (snapshot.stage, snapshot.arm):
             if device is None or device.moving:
                 raise SafetyError(f"only while stage and arm are at rest, not with {device}")
@@ -176,8 +183,11 @@ class Gate:
                 f"valid: at most {self.limits.clear_depth_m * 1e6:.1f} um"
             )
 
+    def _speeds(self, travel: Travel, speed_m_s: float) -> tuple[float, float]:
+        """Return linear [m/s] and angular [rad/s] speed of a move along `travel` at `speed_m_s`.
 
-def _stage_speeds(travel: Travel, speed_m_s: float) -> tuple[float, float]:
-    """Return linear [m/s] and angular [rad/s] speed of a move along `travel` at `speed_m_s`."""
-    share = min(1.0, travel.linear_m / travel.length_m)
-    return speed_m_s * share, speed_m_s / travel.length_m * travel.angle_rad
+        Rounding lifts neither above what `speed_m_s` was derived from.
+        """
+        share = min(1.0, travel.linear_m / travel.length_m)
+        turning = speed_m_s / travel.length_m * travel.angle_rad
+        return speed_m_s * share, min(turning, self.limits.angular_speed_rad_s)

@@ -24,7 +24,7 @@ class FilterHealth(IntFlag):
     REJECTED = 1
     """The newest sample was an outlier and has not been used."""
     STUCK = 2
-    """The sensor repeats the same value."""
+    """The sensor repeats the same values, on all axes or for long on one."""
     SILENT = 4
     """The sensor has sent nothing for three periods."""
     UNTARED = 8

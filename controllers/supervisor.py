@@ -47,11 +47,9 @@ SHORTEST_MOVE_M = 1e-15
 class RunningMove:
     """The stage move that the gate has sent last."""
 
-    stamp_ns: int
-    """When the stage accepted it; a stage state older than this does not know of it."""
     travel: Travel
-    retreats: bool
-    """Whether it leads out of the part."""
+    leads_out: bool
+    """Whether it is a way out of the part, which a retreat lets run."""
     speed_m_s: float
     """Along the travel."""
 
@@ -65,6 +63,11 @@ class Step:
     travel: Travel
     speed_m_s: float
     """Along the travel."""
+
+    @property
+    def leads_out(self) -> bool:
+        """Whether it leads out of the part, and no farther sideways than out."""
+        return self.translation[2] < 0.0 and self.travel.radial_m <= self.travel.axial_m
 
 
 def watch(
@@ -82,16 +85,20 @@ def watch(
     load = weigh(limits, memory, snapshot)
     reasons = time_faults(limits, memory, snapshot)
     if load is not None:
-        reasons += load_faults(limits, load)
+        reasons += load_faults(limits, snapshot, load)
     reasons += sensing_faults(snapshot)
-    reasons += motion_faults(limits, hold_pose, snapshot)
+    reasons += motion_faults(limits, hold_pose, memory, snapshot)
     cap = math.inf
     if running is not None:
         cap = governed_speed(limits, load, snapshot.estimate, running.travel)
         if cap < GOVERNOR_DEADBAND * running.speed_m_s:
             detail = f"{running.speed_m_s * 1e3:.2f} mm/s lowered to {cap * 1e3:.2f} mm/s"
             reasons.append(Reason(Rule.GOVERNOR, Severity.REDUCE, detail))
-    memory = Memory(snapshot.now_ns, load or memory.load, memory.latched)
+    before = memory.load
+    if load is None or (before is not None and load.stamp_ns < before.stamp_ns):
+        load = before
+    seen_stage = snapshot.stage or memory.stage
+    memory = Memory(snapshot.now_ns, load, memory.latched, seen_stage)
     if reasons:
         memory = latch(memory, reasons)
         reasons = [reason for reason in reasons if reason.severity is not Severity.STOP]
@@ -110,12 +117,19 @@ def judge(
 
     Returns the verdict and the step that may be sent in its place, None if it is refused.
     """
-    refusals = [*_refusals(limits, hold_pose, standing, snapshot, proposal, now_ns)]
+    if not finite(proposal.translation, proposal.rotation):
+        detail = f"proposal {proposal.translation}, {proposal.rotation} of {proposal.source}"
+        reason = Reason(Rule.NON_FINITE, Severity.STOP, detail)
+        return Verdict(now_ns, (*standing.reasons, reason), standing.speed_cap_m_s), None
+    step, reductions = _reduced(limits, snapshot, proposal)
+    refusals = [
+        *_refused_by_time(limits, snapshot, proposal, now_ns),
+        *_refused_by_state(limits, hold_pose, standing, snapshot, step),
+    ]
     allowed = standing.severity < Severity.HOLD or standing.severity is Severity.RETREAT
     if refusals or not allowed or snapshot.stage is None:
         reasons = (*standing.reasons, *refusals)
         return Verdict(now_ns, reasons, standing.speed_cap_m_s), None
-    step, reductions = _reduced(limits, snapshot, proposal)
     reasons = (*standing.reasons, *reductions)
     if detail := outside(limits, displaced(snapshot.stage.pose, step), 0.0):
         reason = Reason(Rule.WORKSPACE, Severity.HOLD, f"target {detail}")
@@ -155,18 +169,9 @@ def displaced(pose: Pose, step: Step) -> Pose:
     return Pose((x + dx, y + dy, z + dz), (rx + drx, ry + dry, rz + drz))
 
 
-def _refusals(
-    limits: Limits,
-    hold_pose: Pose,
-    standing: Verdict,
-    snapshot: Snapshot,
-    proposal: Proposal,
-    now_ns: int,
+def _refused_by_time(
+    limits: Limits, snapshot: Snapshot, proposal: Proposal, now_ns: int
 ) -> Iterator[Reason]:
-    if not finite(proposal.translation, proposal.rotation):
-        detail = f"proposal {proposal.translation}, {proposal.rotation} of {proposal.source}"
-        yield Reason(Rule.NON_FINITE, Severity.STOP, detail)
-        return
     for rule, stamp_ns, limit_s in (
         (Rule.STALE_PROPOSAL, proposal.stamp_ns, limits.proposal_age_s),
         (Rule.HEARTBEAT, snapshot.now_ns, limits.heartbeat_s),
@@ -174,9 +179,14 @@ def _refusals(
         age_s = (now_ns - stamp_ns) * 1e-9
         if not 0.0 <= age_s <= limit_s:
             yield too_old(rule, "age", age_s, limit_s)
-    if standing.severity is Severity.RETREAT and proposal.translation[2] >= 0.0:
-        detail = f"proposed {proposal.translation[2] * 1e6:.1f} um along z"
-        yield Reason(Rule.RETREATING, Severity.HOLD, detail)
+
+
+def _refused_by_state(
+    limits: Limits, hold_pose: Pose, standing: Verdict, snapshot: Snapshot, step: Step
+) -> Iterator[Reason]:
+    if standing.severity is Severity.RETREAT and not step.leads_out:
+        asked = ", ".join(f"{v * 1e6:.1f}" for v in step.translation)
+        yield Reason(Rule.RETREATING, Severity.HOLD, f"asked for ({asked}) um")
     stage, arm, gripper, estimate = (
         snapshot.stage,
         snapshot.arm,
@@ -187,14 +197,15 @@ def _refusals(
         return
     if stage.moving:
         yield Reason(Rule.BUSY, Severity.HOLD, "a step is sent only from rest")
-    depth_after = stage.pose.position[2] + proposal.translation[2]
-    if proposal.translation[2] >= 0.0 and depth_after > limits.clear_depth_m:
+    depth_after = stage.pose.position[2] + step.translation[2]
+    if not step.leads_out and depth_after > limits.clear_depth_m:
         if detail := arm_away(limits, hold_pose, arm.pose):
             yield Reason(Rule.KEEP_OUT, Severity.HOLD, detail)
         elif arm.moving:
             yield Reason(Rule.KEEP_OUT, Severity.HOLD, "arm moving")
-        if not gripper.part_held:
-            yield Reason(Rule.VACUUM, Severity.HOLD, "no part held")
+        if not (gripper.valve_open and gripper.part_held):
+            detail = "no part held" if gripper.valve_open else "valve closed"
+            yield Reason(Rule.VACUUM, Severity.HOLD, detail)
         if estimate.health & FilterHealth.UNTARED:
             yield Reason(Rule.UNTARED, Severity.HOLD, "take the bias first")
 

@@ -16,7 +16,7 @@ from controllers.control_loop import ControlLoop, Subscriber
 from controllers.force_filter import ForceFilter
 from controllers.gate import Gate
 from controllers.insertion import InsertionSkill
-from controllers.messages import Severity, SkillPhase, Tick
+from controllers.messages import ResetRecord, Severity, SkillPhase, Tick
 from controllers.proportional import ProportionalController
 from drivers.backends import DeviceClass, device_class
 from drivers.contract.clock import Clock
@@ -133,6 +133,14 @@ class Cell:
         self._turn_until(_at_rest, _REST_TIMEOUT_S, "stage and arm do not come to rest")
         self._loop.wait(_CALM_S)
 
+    def reset(self, operator: str) -> ResetRecord:
+        """Clear the latched stops on an operator's word, and tell the subscribers.
+
+        Whether part and cell are in order only a person can see; a cause that persists latches
+        again.
+        """
+        return self._loop.reset(operator)
+
     def close(self) -> None:
         """Halt what moves and close the devices; one that fails does not keep the others open."""
         with ExitStack() as closing:
@@ -198,7 +206,8 @@ class Cell:
         end_ns = tick.end_ns + round(timeout_s * 1e9)
         while not condition(tick):
             if tick.end_ns > end_ns:
-                raise DeviceTimeoutError(f"{failure} (waited {timeout_s:g} s)")
+                standing = "".join(f"; {reason}" for reason in tick.verdict.reasons)
+                raise DeviceTimeoutError(f"{failure} (waited {timeout_s:g} s){standing}")
             tick = self._loop.tick()
         return tick
 

@@ -57,11 +57,15 @@ class TelemetrySettings(Settings):
 
 
 class StageSettings(TelemetrySettings):
-    """What every stage states; these limits are also set in the device itself."""
+    """What every stage states; the speed limits are also set in the device itself."""
 
-    speed_m_s: Annotated[float, Gt(0), Le(5), MILLI] = Field(alias="speed_limit_mm_s")
-    angular_speed_rad_s: Annotated[float, Gt(0), Le(5), DEGREES] = Field(
+    speed_m_s: Annotated[float, Ge(0.01), Le(5), MILLI] = Field(alias="speed_limit_mm_s")
+    angular_speed_rad_s: Annotated[float, Ge(0.001), Le(5), DEGREES] = Field(
         alias="angular_speed_limit_deg_s"
     )
+    acceleration_m_s2: Annotated[float, Gt(0), Le(100_000), MILLI] = Field(
+        alias="acceleration_mm_s2"
+    )
+    """With which it starts and brakes."""
     travel_m: Annotated[tuple[_Travel, _Travel, _Travel], MICRO] = Field(alias="travel_um")
     """Farthest from its centre along x, y, z, to either side."""

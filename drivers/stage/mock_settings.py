@@ -3,7 +3,7 @@
 from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Gt, Le
+from annotated_types import Ge, Le
 from pydantic import Field
 
 from drivers.contract.device_settings import StageSettings
@@ -19,10 +19,6 @@ _Angle = Annotated[float, Ge(0), Le(1), DEGREES]
 class MockStageSettings(StageSettings):
     """What the mock's stage is like; an error that is not stated is off."""
 
-    acceleration_m_s2: Annotated[float, Gt(0), Le(100_000), MILLI] = Field(
-        alias="acceleration_mm_s2"
-    )
-    """With which it starts and brakes."""
     minimum_step_m: _Length = Field(0.0, alias="minimum_step_um")
     """It goes to multiples of this."""
     minimum_step_rad: _Angle = Field(0.0, alias="minimum_step_deg")

@@ -11,7 +11,7 @@ from drivers.contract.device_settings import (
 )
 from drivers.contract.settings import written
 from hil.config.cell import CellSettings
-from hil.config.part import PartSettings
+from hil.config.part import ContactSettings, PartSettings
 
 
 def part_problems(limits: Limits, part: PartSettings) -> Iterator[str]:
@@ -25,6 +25,10 @@ def part_problems(limits: Limits, part: PartSettings) -> Iterator[str]:
         if value > most:
             key = f"insertion.{written(InsertionSettings, attribute, value)}"
             yield f"{key} is not valid: must not exceed {_limit(limits, limit)} along z"
+    for limit in ("radial_stiffness_N_m", "axial_stiffness_N_m"):
+        if part.contact.stiffness_N_m > getattr(limits, limit):
+            stiffness = written(ContactSettings, "stiffness_N_m", part.contact.stiffness_N_m)
+            yield f"contact.{stiffness} is not valid: must not exceed {_limit(limits, limit)}"
 
 
 def cell_problems(limits: Limits, cell: CellSettings) -> Iterator[str]:
@@ -47,6 +51,9 @@ def stage_problems(machine: Limits, stage: StageSettings) -> Iterator[str]:
         if value > getattr(machine, attribute):
             key = f"stage.{written(StageSettings, attribute, value)}"
             yield f"{key} is not valid: must not exceed {_limit(machine, attribute)}"
+    if stage.acceleration_m_s2 < machine.deceleration_m_s2:
+        key = f"stage.{written(StageSettings, 'acceleration_m_s2', stage.acceleration_m_s2)}"
+        yield f"{key} is not valid: must not be below {_limit(machine, 'deceleration_m_s2')}"
     corners = (machine.workspace_min_m, machine.workspace_max_m)
     if any(abs(c) > t for corner in corners for c, t in zip(corner, stage.travel_m, strict=True)):
         key = f"stage.{written(StageSettings, 'travel_m', stage.travel_m)}"

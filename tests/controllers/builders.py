@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from controllers.faults import Memory
+from controllers.faults import Load, Memory
 from controllers.gate import Gate
 from controllers.governor import Travel
 from controllers.limits import Limits
@@ -47,7 +47,7 @@ LIMITS = Limits.model_validate(
         "clear_depth_um": -100.0,
         "arm_tolerance_um": 5.0,
         "force_limit_mN": (70.0, 100.0, 1000.0),
-        "force_rate_limit_N_s": 100.0,
+        "force_rate_limit_N_s": 40.0,
         "gentle_force_mN": 44.0,
         "impulse_limit_mN_s": 10.0,
         "sample_age_limit_ms": 5.0,
@@ -90,6 +90,16 @@ def snapshot(**changes: Any) -> Snapshot:
     return Snapshot(NOW, sample(), ZERO, estimate(), stage(), arm(), gripper())._replace(**changes)
 
 
+def load(
+    stamp_ns: int,
+    force: tuple[float, float, float],
+    rate_N_s: float = 0.0,
+    impulse_N_s: float = 0.0,
+) -> Load:
+    """Of a sensor without bias."""
+    return Load(stamp_ns, force, force, rate_N_s, impulse_N_s)
+
+
 def proposal(
     translation: tuple[float, float, float] = (0.0, 0.0, 60e-6), **changes: Any
 ) -> Proposal:
@@ -116,7 +126,7 @@ def running(
     speed_m_s: float, translation: tuple[float, float, float] = (1e-5, 0.0, 0.0)
 ) -> RunningMove:
     travel = Travel.of(translation, (0.0, 0.0, 0.0), 4e-3)
-    return RunningMove(NOW, travel, translation[2] < 0.0, speed_m_s)
+    return RunningMove(travel, translation[2] < 0.0, speed_m_s)
 
 
 class FakeStage:
@@ -198,6 +208,12 @@ class Bench:
     ) -> Snapshot:
         """Bring all states up to date, watch, and return what was watched."""
         self.stage.now = self.stage.now._replace(stamp_ns=now_ns)
+        return self.look(now_ns, force)
+
+    def look(
+        self, now_ns: int = NOW, force: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> Snapshot:
+        """The same with the stage's state as old as it is."""
         self.arm.now = self.arm.now._replace(stamp_ns=now_ns)
         self.gripper.now = self.gripper.now._replace(stamp_ns=now_ns)
         seen = self.gate.snapshot(

@@ -12,6 +12,7 @@ from scipy.stats import chi2
 
 from controllers.force_filter import ForceFilter
 from controllers.messages import FilterHealth
+from controllers.repeats import Repeats
 from controllers.settings import FilterSettings
 from drivers.contract.errors import TareRefusedError
 from drivers.contract.messages import ForceSample, SensorStatus, Wrench
@@ -170,6 +171,56 @@ def test_a_stuck_sensor_is_reported_at_its_third_equal_sample() -> None:
     assert stuck == [False, False, True, True, True, True]
     moved = force_filter.update(sample_at(106, (1.1e-3, 2e-3, 0.0, 0.0, 0.0, 0.0)))
     assert FilterHealth.STUCK not in moved.health
+
+
+def stuck_after(axis: int, frozen_from_ms: int, until_ms: int) -> list[int]:
+    """The times [ms] at which a filter calls a sensor stuck of which one axis has frozen."""
+    force_filter = tared()
+    generator = np.random.default_rng(7)
+    times = []
+    for ms in range(100, until_ms):
+        wrench = noisy(generator, np.zeros((1, 6)))[0]
+        if ms >= frozen_from_ms:
+            wrench[axis] = 1e-6
+        if FilterHealth.STUCK in force_filter.update(sample_at(ms, wrench)).health:
+            times.append(ms)
+    return times
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize("frozen_from_ms", [210, 237, 259])
+def test_one_dead_axis_is_reported_within_a_hundred_samples(axis: int, frozen_from_ms: int) -> None:
+    times = stuck_after(axis, frozen_from_ms, 500)
+    assert frozen_from_ms + 48 <= times[0] <= frozen_from_ms + 100
+    assert times == list(range(times[0], 500)), "as long as it lasts"
+
+
+@pytest.mark.parametrize(("equal_samples", "is_stuck"), [(49, False), (50, True)])
+def test_fifty_equal_readings_of_one_axis_are_stuck_until_it_moves(
+    equal_samples: int, is_stuck: bool
+) -> None:
+    force_filter = new_filter()
+    generator = np.random.default_rng(7)
+    healths = []
+    for ms in range(equal_samples + 2):
+        wrench = noisy(generator, np.zeros((1, 6)))[0]
+        wrench[4] = 2e-6 if ms < equal_samples else wrench[4]
+        healths.append(FilterHealth.STUCK in force_filter.update(sample_at(ms, wrench)).health)
+    assert healths == [False] * 49 + [is_stuck] * (equal_samples - 49) + [False, False]
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3, 0.5])
+def test_a_quiet_sensor_with_coarse_readings_is_not_stuck(offset: float) -> None:
+    """Five axes with noise of half their resolution, for 100 000 samples, at any load."""
+    generator = np.random.default_rng(8)
+    readings = np.round(generator.standard_normal((100_000, 6)) * 0.5 + offset)
+    readings[:, 5] = generator.standard_normal(len(readings))
+    repeats = Repeats()
+    alarms = 0
+    for wrench in readings.tolist():
+        repeats.add(tuple(wrench))
+        alarms += repeats.is_stuck
+    assert alarms == 0
 
 
 def test_silence_is_marked_on_the_last_estimate() -> None:

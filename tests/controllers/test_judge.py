@@ -198,13 +198,43 @@ def test_nothing_is_sent_under_a_hold_or_a_stop(severity: Severity, dz_um: float
     assert verdict.severity is severity
 
 
-@pytest.mark.parametrize(("dz_um", "sent"), [(-1.0, True), (0.0, False), (1.0, False)])
-def test_in_retreat_only_steps_out_are_sent(dz_um: float, sent: bool) -> None:
-    step_out = proposal((5e-6, 0.0, dz_um * 1e-6))
-    verdict, step = judged(step_out, standing(Severity.RETREAT))
+OUT_OR_NOT = [
+    ((0.0, 0.0, -1e-6), True),
+    ((0.0, 0.0, 0.0), False),
+    ((0.0, 0.0, 1e-6), False),
+    ((3e-6, 4e-6, -5.001e-6), True),
+    ((5e-6, 0.0, -5e-6), True),
+    ((3e-6, -4e-6, -4.999e-6), False),
+    ((20e-6, 0.0, -1e-14), False),
+    ((0.0, 0.0, -1e-16), False),  # no stage moves by so little
+    ((1.0, 0.0, -60e-6), True),  # what counts is what would be sent: 20 um against 60 um
+    ((20e-6, 20e-6, -28e-6), False),
+]
+
+
+@pytest.mark.parametrize(("translation", "sent"), OUT_OR_NOT)
+def test_in_retreat_only_steps_out_are_sent(translation: Vector3, sent: bool) -> None:
+    """A step is one out if it goes no farther sideways than out."""
+    verdict, step = judged(proposal(translation), standing(Severity.RETREAT))
     assert (step is not None) is sent
     assert verdict.severity is Severity.RETREAT
     assert (Rule.RETREATING in rules(verdict)) is not sent
+
+
+@pytest.mark.parametrize(("dz_um", "sent"), [(-3.48, False), (-3.50, True)])
+def test_a_turn_on_the_way_out_counts_with_its_lever(dz_um: float, sent: bool) -> None:
+    """0.05 deg on 4 mm are 3.49 um sideways; a larger turn is cut to that."""
+    turn = proposal((0.0, 0.0, dz_um * 1e-6), rotation=(0.0, math.radians(0.1), 0.0))
+    _, step = judged(turn, standing(Severity.RETREAT))
+    assert (step is not None) is sent
+
+
+@pytest.mark.parametrize(("translation", "sent"), OUT_OR_NOT)
+def test_without_a_part_only_steps_out_are_sent(translation: Vector3, sent: bool) -> None:
+    let_go = gripper(valve_open=False, part_held=False)
+    verdict, step = judged(proposal(translation), gripper=let_go)
+    assert (step is not None) is sent
+    assert (Rule.VACUUM in rules(verdict)) is not sent
 
 
 @pytest.mark.parametrize("severity", [Severity.PASS, Severity.REDUCE])
@@ -231,8 +261,11 @@ def test_without_data_the_standing_hold_refuses(missing: str) -> None:
 GOING_IN: list[tuple[dict[str, Any], Rule]] = [
     ({"estimate": estimate(health=FilterHealth.UNTARED)}, Rule.UNTARED),
     ({"gripper": gripper(part_held=False)}, Rule.VACUUM),
+    ({"gripper": gripper(valve_open=False)}, Rule.VACUUM),
+    ({"gripper": gripper(valve_open=False, part_held=False)}, Rule.VACUUM),
     ({"arm": arm(moving=True)}, Rule.KEEP_OUT),
     ({"arm": arm(pose=Pose((5.1e-6, 0.0, 0.0)))}, Rule.KEEP_OUT),
+    ({"arm": arm(pose=Pose((0.0, 0.0, 0.0), (0.5, 0.0, 0.0)))}, Rule.KEEP_OUT),
 ]
 
 
@@ -258,6 +291,12 @@ def test_conditions_for_going_in(
     assert (rule in rules(verdict)) is not sent
     if not sent:
         assert verdict.severity is Severity.HOLD
+
+
+@pytest.mark.parametrize(("is_open", "text"), [(True, "no part held"), (False, "valve closed")])
+def test_what_is_wrong_with_the_vacuum_is_told(is_open: bool, text: str) -> None:
+    verdict, _ = judged(proposal(), gripper=gripper(valve_open=is_open, part_held=not is_open))
+    assert [str(r) for r in verdict.reasons] == [f"vacuum lost: {text}"]
 
 
 def test_the_verdict_on_a_proposal_carries_the_standing_reasons() -> None:

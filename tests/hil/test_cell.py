@@ -1,15 +1,26 @@
 """The whole mock cell on simulated time: what its users see of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from controllers.control_loop import Subscriber
-from controllers.messages import Observation, Proposal, Sent, Severity, SkillPhase, Tick
+from controllers.messages import (
+    Observation,
+    PhaseChange,
+    Proposal,
+    ResetRecord,
+    Rule,
+    Sent,
+    Severity,
+    SkillPhase,
+    Tick,
+)
 from controllers.proportional import ProportionalController
 from drivers.contract.clock import ManualClock
 from drivers.contract.errors import (
@@ -18,11 +29,11 @@ from drivers.contract.errors import (
     DeviceTimeoutError,
     SafetyError,
 )
-from drivers.contract.messages import StageCommand, Vector3
+from drivers.contract.messages import ForceSample, Pose, StageCommand, Vector3
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
 from hil.cell import Cell
-from hil.config import load_cell
+from hil.config import CellConfig, load_cell
 
 CONFIG = Path(__file__).parents[2] / "config"
 LIMITS_N = np.array([0.070, 0.100, 1.000])
@@ -52,10 +63,13 @@ class Watcher(Subscriber):
 
 
 def make_cell(
-    controller: str = "expert", seed: int = 1, part: str = "paper_online"
+    controller: str = "expert",
+    seed: int = 1,
+    part: str = "paper_online",
+    change: Callable[[CellConfig], CellConfig] = lambda config: config,
 ) -> tuple[Cell, Watcher, ManualClock]:
     clock = ManualClock()
-    config = load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / f"{part}.yaml")
+    config = change(load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / f"{part}.yaml"))
     cell = Cell(config, controller, clock, np.random.default_rng(seed))
     watcher = Watcher()
     cell.follow(watcher)
@@ -182,6 +196,34 @@ def test_after_a_stop_nothing_more_is_done_until_a_reset() -> None:
         cell.insert_part(2)
 
 
+def test_an_operators_reset_is_told_and_clears_the_stop() -> None:
+    """Force beyond the limit once, clear of the part; then the same cell inserts."""
+    cell, _, clock = make_cell()
+    records: list[ResetRecord] = []
+
+    class Resets(Subscriber):
+        def on_reset(self, record: ResetRecord) -> None:
+            records.append(record)
+
+    cell.follow(Resets())
+    assert cell.insert_part(1).is_clear
+    sensor = cast(MockForceSensor, cell._devices[0])
+    read = sensor.read
+
+    def pushed(timeout_s: float) -> ForceSample:
+        sensor.read = read  # type: ignore[method-assign]
+        return read(timeout_s)._replace(wrench=(1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+
+    sensor.read = pushed  # type: ignore[method-assign]
+    for _ in range(2):
+        with pytest.raises(SafetyError, match="force limit: f_x = "):
+            cell.insert_part(2)
+    assert cell.reset("A. Operator") is records[0]
+    assert (records[0].operator, records[0].stamp_ns) == ("A. Operator", clock.now_ns())
+    assert [reason.rule for reason in records[0].cleared] == [Rule.FORCE]
+    assert cell.insert_part(2).phase is SkillPhase.DONE
+
+
 def test_a_device_that_fails_ends_the_run_and_the_cell_is_held(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -228,6 +270,38 @@ def test_a_part_off_its_place_is_felt_and_led_back_out(monkeypatch: pytest.Monke
     assert (np.abs(inside).max(axis=0) <= LIMITS_N + growth).all()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("bias_N", [(0.080, -0.007, 0.030), (0.012, -0.007, 1.500)])
+def test_any_bias_of_the_sensor_is_taken_before_the_force_counts(bias_N: Vector3) -> None:
+    """Beyond the limits of 70 and 1000 mN, with nothing touching."""
+
+    def biased(config: CellConfig) -> CellConfig:
+        settings = config.force_sensor.settings.model_copy(update={"bias_N": bias_N})
+        return replace(config, force_sensor=replace(config.force_sensor, settings=settings))
+
+    cell, watcher, _ = make_cell(change=biased)
+    assert cell.insert_part(1).phase is SkillPhase.DONE
+    assert max(watcher.severities) < Severity.HOLD
+
+
+def test_a_cell_that_does_not_become_calm_says_what_holds_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cell, _, clock = make_cell()
+
+    def read(sensor: MockForceSensor, timeout_s: float) -> None:
+        clock.sleep_until_ns(clock.now_ns() + round(timeout_s * 1e9))
+        raise DeviceTimeoutError("unplugged")
+
+    monkeypatch.setattr(MockForceSensor, "read", read)
+    with pytest.raises(DeviceTimeoutError) as caught:
+        cell.insert_part(1)
+    assert str(caught.value) == (
+        "the cell does not become calm (waited 1 s); missing data: no force sample yet; "
+        "missing data: no force estimate yet"
+    )
+
+
 def test_every_proposal_is_answered_and_tied_by_its_number() -> None:
     cell, _, _ = make_cell()
     proposed: list[int] = []
@@ -243,3 +317,51 @@ def test_every_proposal_is_answered_and_tied_by_its_number() -> None:
     cell.follow(Numbers())
     cell.insert_part(1)
     assert proposed == sent == list(range(1, len(sent) + 1))
+
+
+def lame(at_move: int, share: float) -> Callable[..., StageCommand]:
+    """A stage that from a move on accepts every step and makes only a share of its way."""
+    move_to, moves = MockStage.move_to, 0
+
+    def move(stage: MockStage, target: Pose, *speeds: float) -> StageCommand:
+        nonlocal moves
+        moves += 1
+        if moves >= at_move:
+            start = stage.state().pose
+            x, y, z = (
+                s + share * (t - s) for s, t in zip(start.position, target.position, strict=True)
+            )
+            target = Pose((x, y, z), start.rotation)
+        return move_to(stage, target, *speeds)
+
+    return move
+
+
+@pytest.mark.parametrize(("at_move", "phase"), [(1, "approach"), (10, "insert"), (60, "done")])
+def test_a_stage_that_accepts_steps_but_does_not_move_ends_the_run(
+    at_move: int, phase: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the way in, inside the part, and on the way out: after five steps."""
+    cell, _, _ = make_cell()
+    phases: list[str] = []
+    sent: list[Sent] = []
+
+    class Keeper(Subscriber):
+        def on_phase(self, change: PhaseChange) -> None:
+            phases.append(change.phase)
+
+        def on_sent(self, answer: Sent) -> None:
+            sent.append(answer)
+
+    cell.follow(Keeper())
+    monkeypatch.setattr(MockStage, "move_to", lame(at_move, 0.09))
+    with pytest.raises(DeviceError, match="the stage has not followed 5 steps in a row"):
+        cell.insert_part(1)
+    assert phases[-1] == phase
+    assert len(sent) == at_move + 4
+
+
+def test_a_stage_that_falls_short_is_followed_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    cell, _, _ = make_cell()
+    monkeypatch.setattr(MockStage, "move_to", lame(1, 0.5))
+    assert cell.insert_part(1).phase is SkillPhase.DONE

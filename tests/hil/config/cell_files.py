@@ -21,7 +21,7 @@ PART_LIMITS = {
     "angular_speed_limit_deg_s": 1,
     "step_box_um": [20, 20, 60],
     "force_limit_mN": [70, 100, 1000],
-    "force_rate_limit_N_s": 100,
+    "force_rate_limit_N_s": 40,
     "gentle_force_mN": 44,
     "impulse_limit_mN_s": 10,
 }

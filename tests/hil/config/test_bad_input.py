@@ -296,7 +296,7 @@ def test_all_problems_of_a_file_are_told_at_once(refuse: Refuse) -> None:
         "config/mock_cell.yaml: skill.settle_time_ms is missing: "
         "must be a number at least 0 and at most 10000, in ms",
         "config/mock_cell.yaml: stage.speed_limit_mm_s = 7 is not valid: "
-        "must be greater than 0 and at most 5",
+        "must be at least 0.01 and at most 5",
         "config/mock_cell.yaml: arm.acceleration_mm_s2 = 'fast' is not valid: "
         "must be a number greater than 0 and at most 10000",
     ]

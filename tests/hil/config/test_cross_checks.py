@@ -23,7 +23,7 @@ def changed(*changes: tuple[str, str, object]) -> Files:
         ("step_box_um", [20, 20, 61], "[20, 20, 61]", "[20, 20, 60]"),
         ("force_limit_mN", [71, 100, 1000], "[71, 100, 1000]", "[70, 100, 1000]"),
         ("force_limit_mN", [10, 101, 10], "[10, 101, 10]", "[70, 100, 1000]"),
-        ("force_rate_limit_N_s", 101, "101", "100"),
+        ("force_rate_limit_N_s", 41, "41", "40"),
         ("gentle_force_mN", 45, "45", "44"),
         ("impulse_limit_mN_s", 10.5, "10.5", "10"),
     ],
@@ -60,7 +60,7 @@ def test_every_looser_limit_is_told(refuse: Refuse) -> None:
         (
             LIMITS,
             "creep_speed_mm_s",
-            5,
+            0.5,
             None,
         ),
         (
@@ -81,6 +81,36 @@ def test_every_looser_limit_is_told(refuse: Refuse) -> None:
             3000,
             "insertion.stroke_um = 3000 is not valid: "
             "must be greater than 3000, the depth at which the last hole begins",
+        ),
+        (
+            LIMITS,
+            "gentle_force_mN",
+            70.1,
+            "gentle_force_mN = 70.1 is not valid: "
+            "must not exceed force_limit_mN = [70, 100, 1000] along x or y",
+        ),
+        (
+            LIMITS,
+            "force_limit_mN",
+            [100, 43, 1000],
+            "gentle_force_mN = 44 is not valid: "
+            "must not exceed force_limit_mN = [100, 43, 1000] along x or y",
+        ),
+        (LIMITS, "gentle_force_mN", 70, None),
+        (
+            PART,
+            "contact.stiffness_mN_um",
+            8.1,
+            "contact.stiffness_mN_um = 8.1 is not valid: "
+            "must not exceed the limit axial_stiffness_mN_um = 8",
+        ),
+        (PART, "contact.stiffness_mN_um", 8, None),
+        (
+            CELL,
+            "stage.acceleration_mm_s2",
+            999,
+            "stage.acceleration_mm_s2 = 999 is not valid: "
+            "must not be below the limit deceleration_mm_s2 = 1000",
         ),
         (PART, "insertion.stroke_um", 3000.1, None),
         (PART, "insertion.stroke_um", 3600, None),
@@ -200,16 +230,16 @@ def test_a_part_may_be_slower_than_the_stage_and_the_creep_speed(load: Load) -> 
     assert load(changed((PART, "limits.speed_limit_mm_s", 0.05))).limits.speed_m_s == 5e-5
 
 
-def test_creep_faster_than_the_speed_limit(refuse: Refuse) -> None:
+def test_creep_faster_than_a_tenth_of_the_speed_limit(refuse: Refuse) -> None:
     files = changed(
         (LIMITS, "speed_limit_mm_s", 2),
-        (LIMITS, "creep_speed_mm_s", 2.5),
+        (LIMITS, "creep_speed_mm_s", 0.21),
         (PART, "limits.speed_limit_mm_s", 2),
         (CELL, "stage.speed_limit_mm_s", 2),
     )
     assert refuse(files) == (
-        "config/limits.yaml: creep_speed_mm_s = 2.5 is not valid: "
-        "must not exceed speed_limit_mm_s = 2"
+        "config/limits.yaml: creep_speed_mm_s = 0.21 is not valid: "
+        "must not exceed a tenth of speed_limit_mm_s = 2"
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
+from controllers.governor import Travel, speed_cap
 from hil.config import CellConfig, load_cell
 from simulator.contact import ContactLaw
 from simulator.geometry import Hole, Part, Shaft
@@ -33,7 +34,7 @@ def test_limits(config: CellConfig) -> None:
         "clear_depth_m": -1e-4,
         "arm_tolerance_m": 5e-6,
         "force_N": (0.07, 0.1, 1.0),
-        "force_rate_N_s": 100.0,
+        "force_rate_N_s": 40.0,
         "gentle_force_N": 0.044,
         "impulse_N_s": 0.01,
         "sample_age_s": 0.005,
@@ -48,6 +49,23 @@ def test_limits(config: CellConfig) -> None:
         "creep_speed_m_s": 1e-4,
         "uncertainty_sigmas": 3.0,
     }
+
+
+def test_the_growth_limit_lies_between_a_governed_move_and_a_crash(config: CellConfig) -> None:
+    """A crash into a wall is told one sample before the limit of 70 mN, not after it."""
+    growth_N = config.limits.force_rate_N_s / config.force_sensor.settings.rate_Hz
+    assert growth_N < 0.070
+    zero = (0.0, 0.0, 0.0)
+    moves = [(0.0, 0.0, 6e-5), (2e-5, 0.0, 0.0), (2e-5, 2e-5, 6e-5), (2e-5, 0.0, 2e-5)]
+    fastest_N = max(
+        speed_cap(config.limits, zero, zero, travel)
+        * max(16e3 * travel.radial_m + 8e3 * travel.axial_m, 8e3 * travel.length_m)
+        / travel.length_m
+        * 1e-3
+        for travel in (Travel.of(move, zero, 4e-3) for move in moves)
+    )
+    noise_N = config.force_sensor.settings.model_dump()["force_noise_N"]
+    assert fastest_N + 8.0 * noise_N < growth_N
 
 
 def test_devices(config: CellConfig) -> None:
