@@ -49,8 +49,11 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
     """Write the report of `log` to `path`; the same log gives the same bytes.
 
     The forces of `compared_with` are shown beside those of `log`. Raises LogError where the file
-    cannot be written.
+    cannot be written, or is one of the logs.
     """
+    for source in (log, compared_with):
+        if source is not None and path.exists() and path.samefile(source.path):
+            raise LogError(f"the report {path} would overwrite the log that it is made from")
     runs = _runs(log, compared_with)
     summary = runs[0].summary
     page = _template().render(

@@ -81,7 +81,8 @@ def run_cell(
         Path, typer.Option(help="The cell (YAML): its devices, limits, part and controllers.")
     ],
     log: Annotated[
-        Path, typer.Option(help="MCAP file to write. It must not exist. The report goes beside it.")
+        Path,
+        typer.Option(help="File to write, named .mcap. It must not exist. The report goes beside."),
     ],
     insertions: Annotated[int, typer.Option(min=1, help="How many parts to insert.")] = 1,
     controller: Annotated[
@@ -112,6 +113,7 @@ def run_cell(
         settings = load_cell(config, part)
         clock = SystemClock() if real_time else ManualClock()
         cell = Cell(settings, controller, clock, np.random.default_rng(seed))
+        _check_name(log)
         recorder = Recorder(
             LogProcess(log, metadata(settings, controller, insertions, seed, real_time))
         )
@@ -144,6 +146,12 @@ def run_cell(
         console.print(run.early_end, soft_wrap=True, highlight=False)
     console.print(f"Log: {log}\nReport: {report}", soft_wrap=True, highlight=False)
     raise typer.Exit(run.exit_code)
+
+
+def _check_name(log: Path) -> None:
+    """Raise LogError for a log whose report would not have a name of its own."""
+    if log.suffix != ".mcap":
+        raise LogError(f"the log {log} is not valid: its name must end in .mcap")
 
 
 def _insert_parts(cell: Cell, run: Run, console: Console) -> None:

@@ -132,6 +132,8 @@ def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path) -> None:
         (("--controller", "ddpg"), "error: controller 'ddpg' is not valid: one of expert, p is"),
         (("--part", "config/limits.yaml"), "error: config/limits.yaml: "),
         (("--log", "nowhere/run.mcap"), "error: cannot create the log nowhere/run.mcap"),
+        (("--log", "runs/a.html"), "error: the log runs/a.html is not valid: its name must end"),
+        (("--log", "runs/r.1"), "error: the log runs/r.1 is not valid: its name must end in .mcap"),
     ],
 )
 def test_unusable_input_ends_before_anything_moves(

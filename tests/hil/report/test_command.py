@@ -47,3 +47,29 @@ def test_unusable_input_is_told_in_one_line(tmp_path: Path) -> None:
         assert done.stderr.count("\n") == 1
         assert str(log) in done.stderr
         assert not log.with_suffix(".html").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("is_compared", [False, True])
+def test_a_page_never_takes_the_place_of_a_log(
+    write_run: Callable[..., RunWriter], tmp_path: Path, is_compared: bool
+) -> None:
+    run, other = write_run(), write_run()
+    run.close()
+    other.close()
+    page = tmp_path / "page.html"
+    page.symlink_to(other.path if is_compared else run.path)
+    before = page.read_bytes()
+    done = run_report(run.path, "--output", page, "--compare", other.path)
+    assert done.returncode == 2
+    assert done.stderr == f"error: the report {page} would overwrite the log that it is made from\n"
+    assert page.read_bytes() == before
+
+
+@pytest.mark.slow
+def test_a_log_that_is_named_like_its_page_is_kept(write_run: Callable[..., RunWriter]) -> None:
+    run = write_run(name="run.html")
+    run.close()
+    before = run.path.read_bytes()
+    assert run_report(run.path).returncode == 2
+    assert run.path.read_bytes() == before
