@@ -8,7 +8,6 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from controllers.messages import SkillPhase
@@ -23,6 +22,7 @@ from hil.metadata import metadata
 from hil.recorder import Recorder
 from hil.report import write_report
 from hil.summary import render_table, summarise
+from hil.terminal import OutputError, print_error, standard_output
 from hil.truth_probe import TruthProbe
 
 
@@ -43,6 +43,12 @@ class Run:
     asked: int
     outcomes: list[Outcome] = field(default_factory=list)
     error: TenonError | None = None
+
+    def fail(self, error: TenonError) -> None:
+        """Note why the run failed; what failed first counts, but no fault hides behind a signal."""
+        is_fault = not isinstance(error, InterruptedRunError | OutputError)
+        if self.error is None or (isinstance(self.error, InterruptedRunError) and is_fault):
+            self.error = error
 
     @property
     def inserted(self) -> int:
@@ -106,9 +112,8 @@ def run_cell(
     Ctrl-C and SIGTERM hold the cell and finish the log.
 
     Exit code: 0 every part inserted, 1 not every part, 2 unusable input (nothing has moved),
-    3 a device or the log failed, 130 or 143 interrupted.
+    3 a device, the log, the report or the terminal failed, 130 or 143 interrupted.
     """
-    console = Console()
     try:
         settings = load_cell(config, part)
         clock = SystemClock() if real_time else ManualClock()
@@ -118,7 +123,7 @@ def run_cell(
             LogProcess(log, metadata(settings, controller, insertions, seed, real_time))
         )
     except TenonError as error:
-        Console(stderr=True).print(f"[red]error:[/] {error}", soft_wrap=True, highlight=False)
+        print_error(error)
         raise typer.Exit(ExitCode.UNUSABLE_INPUT) from error
     cell.follow(recorder)
     cell.follow(TruthProbe(cell.world, recorder))
@@ -130,21 +135,21 @@ def run_cell(
             with closing(recorder):
                 try:
                     with closing(cell):
-                        _insert_parts(cell, run, console)
+                        _insert_parts(cell, run)
                 except TenonError as error:
-                    run.error = error
+                    run.fail(error)
                 recorder.close(run.early_end)
         except LogError as error:
-            run.error = run.error or error
+            run.fail(error)
 
-    recorded = read_log(log)
-    summary = summarise(recorded)
-    console.print(render_table(summary))
-    report = log.with_suffix(".html")
-    write_report(recorded, report)
-    if run.early_end not in ("", summary.facts.early_end):
-        console.print(run.early_end, soft_wrap=True, highlight=False)
-    console.print(f"Log: {log}\nReport: {report}", soft_wrap=True, highlight=False)
+    try:
+        _report(log, run)
+    except TenonError as error:
+        run.fail(error)
+        print_error(error)
+    else:
+        if isinstance(run.error, OutputError):
+            print_error(run.error)
     raise typer.Exit(run.exit_code)
 
 
@@ -154,7 +159,21 @@ def _check_name(log: Path) -> None:
         raise LogError(f"the log {log} is not valid: its name must end in .mcap")
 
 
-def _insert_parts(cell: Cell, run: Run, console: Console) -> None:
+def _report(log: Path, run: Run) -> None:
+    """Write the page beside the log, then say how the run went."""
+    recorded = read_log(log)
+    report = log.with_suffix(".html")
+    write_report(recorded, report)
+    summary = summarise(recorded)
+    with standard_output() as console:
+        console.print(render_table(summary))
+        if run.early_end not in ("", summary.facts.early_end):
+            console.print(run.early_end, soft_wrap=True, markup=False, highlight=False)
+        paths = f"Log: {log}\nReport: {report}"
+        console.print(paths, soft_wrap=True, markup=False, highlight=False)
+
+
+def _insert_parts(cell: Cell, run: Run) -> None:
     """Insert until all are done, one has left the shaft in its part, or somebody interrupts."""
     cell.connect()
     columns = (
@@ -164,12 +183,13 @@ def _insert_parts(cell: Cell, run: Run, console: Console) -> None:
         TextColumn("{task.fields[last]}"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=console) as progress:
+    with standard_output() as console, Progress(*columns, console=console) as progress:
         task = progress.add_task("", total=run.asked, last="")
         for number in range(1, run.asked + 1):
             try:
                 outcome = cell.insert_part(number)
-            except InterruptedRunError:
+            except InterruptedRunError as interrupted:
+                run.fail(interrupted)
                 cell.hold()
                 raise
             run.outcomes.append(outcome)

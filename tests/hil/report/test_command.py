@@ -1,5 +1,6 @@
 """The command `python hil/report.py`."""
 
+import resource
 import subprocess
 import sys
 from collections.abc import Callable
@@ -7,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from drivers.contract.errors import LogError
+from hil.report import write_report
 from tests.hil.report.runs import RunWriter
 
 ROOT = Path(__file__).parents[3]
@@ -73,3 +76,21 @@ def test_a_log_that_is_named_like_its_page_is_kept(write_run: Callable[..., RunW
     before = run.path.read_bytes()
     assert run_report(run.path).returncode == 2
     assert run.path.read_bytes() == before
+
+
+def test_a_page_that_cannot_be_finished_leaves_the_one_before(
+    write_run: Callable[..., RunWriter], tmp_path: Path
+) -> None:
+    log = write_run().close()
+    page = tmp_path / "page.html"
+    page.write_text("the page before")
+    files = set(tmp_path.iterdir())
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        with pytest.raises(LogError, match=r"page\.html: File too large"):
+            write_report(log, page)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert page.read_text() == "the page before"
+    assert set(tmp_path.iterdir()) == files
