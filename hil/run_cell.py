@@ -62,7 +62,7 @@ class Run:
             return ExitCode.SIGNAL + self.error.signal_number
         if self.error is not None:
             return ExitCode.FAULT
-        if self.inserted == self.asked:
+        if self.inserted == self.asked and self.outcomes[-1].is_clear:
             return ExitCode.ALL_INSERTED
         return ExitCode.NOT_ALL_INSERTED
 
@@ -111,8 +111,9 @@ def run_cell(
 
     Ctrl-C and SIGTERM hold the cell and finish the log.
 
-    Exit code: 0 every part inserted, 1 not every part, 2 unusable input (nothing has moved),
-    3 a device, the log, the report or the terminal failed, 130 or 143 interrupted.
+    Exit code: 0 every part inserted, 1 not every part or the shaft left in one, 2 unusable input
+    (nothing has moved), 3 a device, the log, the report or the terminal failed, 130 or 143
+    interrupted.
     """
     try:
         settings = load_cell(config, part)

@@ -9,7 +9,12 @@ from pathlib import Path
 import pytest
 import typer
 
+from controllers.control_loop import ControlLoop
 from drivers.contract.clock import ManualClock
+from drivers.contract.errors import DeviceError
+from drivers.contract.messages import ForceSample, SensorStatus
+from drivers.force_sensor.mock import MockForceSensor
+from drivers.stage.mock import MockStage
 from hil.log_reader import read_log
 from hil.run_cell import run_cell
 
@@ -80,3 +85,41 @@ def test_nobody_listens_to_the_run(log: Path) -> None:
     assert done.returncode == 3
     assert read_log(log).complete
     assert log.with_suffix(".html").read_text().endswith("</html>")
+
+
+def test_a_stop_while_the_last_part_is_withdrawn(
+    log: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The part is inserted, but the shaft stays in it: no success."""
+    withdraw, read = ControlLoop.withdraw, MockForceSensor.read
+
+    def read_fault(sensor: MockForceSensor, timeout_s: float) -> ForceSample:
+        return read(sensor, timeout_s)._replace(status=SensorStatus.FAULT)
+
+    def withdraw_with_fault(loop: ControlLoop, depth_m: float, longest_m: float) -> bool:
+        monkeypatch.setattr(MockForceSensor, "read", read_fault)
+        return withdraw(loop, depth_m, longest_m)
+
+    monkeypatch.setattr(ControlLoop, "withdraw", withdraw_with_fault)
+    assert run(log) == 1
+    ending = (
+        "The run ended with insertion 1, which left the shaft in the part: force sensor status: "
+    )
+    assert ending in " ".join(capsys.readouterr().out.split())
+    assert read_log(log).metadata["ending"]["text"].startswith(ending)
+
+
+def test_a_device_that_cannot_be_reached(
+    log: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(stage: MockStage) -> None:
+        raise DeviceError("the stage at port 7 does not answer")
+
+    closed: list[str] = []
+    monkeypatch.setattr(MockStage, "connect", fail)
+    for kind in (MockForceSensor, MockStage):
+        monkeypatch.setattr(kind, "close", lambda device: closed.append(type(device).__name__))
+    assert run(log) == 3
+    expected = "The run ended by a fault: the stage at port 7 does not answer."
+    assert expected in " ".join(capsys.readouterr().out.split())
+    assert closed == ["MockStage", "MockForceSensor"]
