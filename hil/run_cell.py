@@ -16,7 +16,7 @@ from drivers.contract.errors import LogError, TenonError
 from hil.cell import Cell, Outcome
 from hil.config import load_cell
 from hil.interrupt import Interrupt, InterruptedRunError
-from hil.log_process import LogProcess
+from hil.log_process import PATIENCE_S, LogProcess
 from hil.log_reader import read_log
 from hil.metadata import metadata
 from hil.recorder import Recorder
@@ -70,7 +70,7 @@ class Run:
     def early_end(self) -> str:
         """In one sentence, why the run ended before its time; empty if it did not."""
         if isinstance(self.error, InterruptedRunError):
-            return f"The run was {self.error}; the cell is held and the log is complete."
+            return f"The run was {self.error}; the cell is held."
         if self.error is not None:
             return f"The run ended by a fault: {self.error}."
         if self.outcomes and not self.outcomes[-1].is_clear:
@@ -109,40 +109,55 @@ def run_cell(
 ) -> None:
     """Insert parts and log everything: raw forces, proposals, verdicts, and what was really sent.
 
-    Ctrl-C and SIGTERM hold the cell and finish the log.
+    Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP hold the cell and finish the log.
 
     Exit code: 0 every part inserted, 1 not every part or the shaft left in one, 2 unusable input
-    (nothing has moved), 3 a device, the log, the report or the terminal failed, 130 or 143
-    interrupted.
+    (nothing has moved), 3 a device, the log, the report or the terminal failed, 130, 148,
+    143 or 129 interrupted.
     """
-    try:
-        settings = load_cell(config, part)
-        clock = SystemClock() if real_time else ManualClock()
-        cell = Cell(settings, controller, clock, np.random.default_rng(seed))
-        _check_name(log)
-        recorder = Recorder(
-            LogProcess(log, metadata(settings, controller, insertions, seed, real_time))
-        )
-    except TenonError as error:
-        print_error(error)
-        raise typer.Exit(ExitCode.UNUSABLE_INPUT) from error
-    cell.follow(recorder)
-    cell.follow(TruthProbe(cell.world, recorder))
-
-    run = Run(asked=insertions)
     with Interrupt() as interrupt:
-        cell.follow(interrupt)
         try:
-            with closing(recorder):
-                try:
-                    with closing(cell):
-                        _insert_parts(cell, run)
-                except TenonError as error:
-                    run.fail(error)
-                recorder.close(run.early_end)
-        except LogError as error:
-            run.fail(error)
+            settings = load_cell(config, part)
+            clock = SystemClock() if real_time else ManualClock()
+            cell = Cell(settings, controller, clock, np.random.default_rng(seed))
+            _check_name(log)
+            about = metadata(settings, controller, insertions, seed, real_time)
+            patience_s = 0.0 if real_time else PATIENCE_S
+            recorder = Recorder(LogProcess(log, about, patience_s=patience_s))
+        except TenonError as error:
+            print_error(error)
+            raise typer.Exit(ExitCode.UNUSABLE_INPUT) from error
+        cell.follow(recorder)
+        cell.follow(TruthProbe(cell.world, recorder))
+        cell.follow(interrupt)
+        run = Run(asked=insertions)
+        _record(cell, recorder, run)
+        _conclude(log, run)
+    raise typer.Exit(run.exit_code)
 
+
+def _check_name(log: Path) -> None:
+    """Raise LogError for a log whose report would not have a name of its own."""
+    if log.suffix != ".mcap":
+        raise LogError(f"the log {log} is not valid: its name must end in .mcap")
+
+
+def _record(cell: Cell, recorder: Recorder, run: Run) -> None:
+    """Insert the parts; whatever happens, the cell comes to rest, and then the log is finished."""
+    try:
+        with closing(recorder):
+            try:
+                with closing(cell):
+                    _insert_parts(cell, run)
+            except TenonError as error:
+                run.fail(error)
+            recorder.close(run.early_end)
+    except LogError as error:
+        run.fail(error)
+
+
+def _conclude(log: Path, run: Run) -> None:
+    """Report on the run; what keeps that from somebody is said on standard error."""
     try:
         _report(log, run)
     except TenonError as error:
@@ -151,13 +166,6 @@ def run_cell(
     else:
         if isinstance(run.error, OutputError):
             print_error(run.error)
-    raise typer.Exit(run.exit_code)
-
-
-def _check_name(log: Path) -> None:
-    """Raise LogError for a log whose report would not have a name of its own."""
-    if log.suffix != ".mcap":
-        raise LogError(f"the log {log} is not valid: its name must end in .mcap")
 
 
 def _report(log: Path, run: Run) -> None:
