@@ -1,7 +1,6 @@
 """A log in a process of its own holds what a plain one holds; its writer outlives its sender."""
 
 import contextlib
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -29,10 +28,10 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "run.mcap"
 
 
-def _writer_pid() -> int:
-    (writer,) = multiprocessing.active_children()
-    assert writer.pid is not None
-    return writer.pid
+def _writer_pid(log: LogProcess) -> int:
+    pid = log._process.pid
+    assert pid is not None
+    return pid
 
 
 def _sample(ms: int) -> ForceSample:
@@ -76,7 +75,7 @@ def test_what_is_flushed_comes_to_the_disk_without_more(path: Path) -> None:
 def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> None:
     log = LogProcess(path, scenario.METADATA)
     recorder = Recorder(log)
-    os.kill(_writer_pid(), signal.SIGKILL)
+    os.kill(_writer_pid(log), signal.SIGKILL)
     died = rf"the process that writes the log {path} has died"
     with pytest.raises(LogError, match=died):
         _record_samples(recorder, 2000)
@@ -89,9 +88,9 @@ def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> No
 
 def test_a_writer_that_dies_before_the_end_is_an_error_at_the_end(path: Path) -> None:
     log = LogProcess(path, {})
-    os.kill(_writer_pid(), signal.SIGSTOP)
+    os.kill(_writer_pid(log), signal.SIGSTOP)
     log.write("/force/raw", b"", 0, 0)
-    os.kill(_writer_pid(), signal.SIGKILL)
+    os.kill(_writer_pid(log), signal.SIGKILL)
     with pytest.raises(LogError, match="has died"):
         log.close()
 
@@ -100,7 +99,7 @@ def test_a_writer_that_stalls_holds_nobody_up(path: Path) -> None:
     """What it was sent it still writes once it goes on."""
     log = LogProcess(path, {}, patience_s=0.0)
     recorder = Recorder(log)
-    writer = _writer_pid()
+    writer = _writer_pid(log)
     os.kill(writer, signal.SIGSTOP)
     begin_s = time.monotonic()
     with pytest.raises(LogError, match="does not keep up"):
@@ -120,13 +119,13 @@ def test_a_writer_that_stalls_for_good_is_left_behind(
     path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     log = LogProcess(path, {})
-    writer = _writer_pid()
+    writer = _writer_pid(log)
     os.kill(writer, signal.SIGSTOP)
     log.write("/force/raw", b"", 0, 0)
     monkeypatch.setattr("hil.log_process.PATIENCE_S", 0.1)
     with pytest.raises(LogError, match="does not answer"):
         log.close()
-    assert not multiprocessing.active_children()
+    assert not log._process.is_alive()
     assert read_log(path).raw_force.sequences.size == 0
 
 
@@ -160,8 +159,9 @@ def test_a_signal_while_the_writer_starts_ends_both(path: Path) -> None:
 def test_signals_to_the_whole_terminal_do_not_end_the_writer(
     path: Path, number: signal.Signals
 ) -> None:
-    recorder = Recorder(LogProcess(path, {}))
-    os.kill(_writer_pid(), number)
+    log = LogProcess(path, {})
+    recorder = Recorder(log)
+    os.kill(_writer_pid(log), number)
     _record_samples(recorder, 100)
     recorder.close()
     assert read_log(path).raw_force.sequences.tolist() == list(range(100))
