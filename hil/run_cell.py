@@ -88,7 +88,9 @@ def run_cell(
     ],
     log: Annotated[
         Path,
-        typer.Option(help="File to write, named .mcap. It must not exist. The report goes beside."),
+        typer.Option(
+            help="File to write, named .mcap; it must not exist. The report goes beside it."
+        ),
     ],
     insertions: Annotated[int, typer.Option(min=1, help="How many parts to insert.")] = 1,
     controller: Annotated[
@@ -120,7 +122,7 @@ def run_cell(
             settings = load_cell(config, part)
             clock = SystemClock() if real_time else ManualClock()
             cell = Cell(settings, controller, clock, np.random.default_rng(seed))
-            _check_name(log)
+            _make_room(log)
             about = metadata(settings, controller, insertions, seed, real_time)
             patience_s = 0.0 if real_time else PATIENCE_S
             recorder = Recorder(LogProcess(log, about, patience_s=patience_s))
@@ -136,10 +138,14 @@ def run_cell(
     raise typer.Exit(run.exit_code)
 
 
-def _check_name(log: Path) -> None:
-    """Raise LogError for a log whose report would not have a name of its own."""
+def _make_room(log: Path) -> None:
+    """Make the log's folder; raises LogError for a name that leaves none to the report."""
     if log.suffix != ".mcap":
         raise LogError(f"the log {log} is not valid: its name must end in .mcap")
+    try:
+        log.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LogError(f"cannot create the folder {log.parent}: {error.strerror}") from error
 
 
 def _record(cell: Cell, recorder: Recorder, run: Run) -> None:

@@ -47,7 +47,7 @@ def test_a_stop_by_the_supervisor_ends_the_run_and_is_explained(tmp_path: Path) 
 
 
 def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
-    logs = [tmp_path / f"{name}.mcap" for name in "abc"]
+    logs = [tmp_path / "runs" / "monday" / f"{name}.mcap" for name in "abc"]
     for log, seed in zip(logs, ("3", "3", "4"), strict=True):
         code, _, err = run("--config", MOCK, "--seed", seed, "--log", str(log))
         assert (code, err) == (0, "")
@@ -85,7 +85,7 @@ def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path) -> None:
         (("--config", "config/nowhere.yaml"), "error: config/nowhere.yaml: cannot be read"),
         (("--controller", "ddpg"), "error: controller 'ddpg' is not valid: one of expert, p is"),
         (("--part", "config/limits.yaml"), "error: config/limits.yaml: "),
-        (("--log", "nowhere/run.mcap"), "error: cannot create the log nowhere/run.mcap"),
+        (("--log", "Makefile/r.mcap"), "error: cannot create the folder Makefile: File exists"),
         (("--log", "runs/a.html"), "error: the log runs/a.html is not valid: its name must end"),
         (("--log", "runs/r.1"), "error: the log runs/r.1 is not valid: its name must end in .mcap"),
     ],
