@@ -114,7 +114,17 @@ def test_a_lost_chunk_is_noticed(whole: Whole) -> None:
         found = _read_or_refuse(whole.folder / "altered.mcap", altered)
         assert found is not None
         assert rows(found) != rows(whole.log)
-        assert found.ending == "it is damaged: messages are missing"
+        assert found.ending.startswith("it is damaged before byte")
+
+
+def test_an_altered_record_of_metadata_is_noticed(whole: Whole) -> None:
+    place = whole.content.index(b"hole_diameter_um: 1010") + len("hole_diameter_um: 10")
+    found = _read_or_refuse(whole.folder / "altered.mcap", _altered(whole, place, b"2"))
+    assert found is not None
+    assert found.metadata["configuration"]["text"] == "hole_diameter_um: 1020\n"
+    assert not found.complete
+    assert found.ending.startswith("it is damaged before byte")
+    assert rows(found) == rows(whole.log)
 
 
 @pytest.mark.parametrize(
