@@ -220,6 +220,13 @@ def test_file_that_is_not_there(key: str, refuse: Refuse) -> None:
     )
 
 
+@pytest.mark.parametrize("key", ["limits", "part"])
+def test_file_whose_name_no_file_can_have(key: str, refuse: Refuse) -> None:
+    assert refuse(changed((CELL, key, "parts/a\0b.yaml"))) == (
+        "'config/parts/a\\x00b.yaml': cannot be read: embedded null byte"
+    )
+
+
 def test_heartbeat_faster_than_the_sensor(refuse: Refuse) -> None:
     assert refuse(changed((LIMITS, "heartbeat_limit_ms", 0.5))) == (
         "config/mock_cell.yaml: force_sensor.rate_Hz = 1000 is not valid: "
