@@ -114,8 +114,8 @@ def run_cell(
     Ctrl-C, Ctrl-Z, SIGTERM and SIGHUP hold the cell and finish the log.
 
     Exit code: 0 every part inserted, 1 not every part or the shaft left in one, 2 unusable input
-    (nothing has moved), 3 a device, the log, the report or the terminal failed, 130, 148,
-    143 or 129 interrupted.
+    (nothing has moved), 3 a fault of device, log, report or terminal, or a stop between insertions,
+    129, 130, 143 or 148 interrupted.
     """
     with Interrupt() as interrupt:
         try:
