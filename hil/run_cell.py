@@ -1,8 +1,6 @@
 """Inserts parts with the cell that a configuration describes, and logs everything to MCAP."""
 
 from contextlib import closing
-from dataclasses import dataclass, field
-from enum import IntEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -10,10 +8,9 @@ import numpy as np
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from controllers.messages import SkillPhase
 from drivers.contract.clock import ManualClock, SystemClock
 from drivers.contract.errors import LogError, TenonError
-from hil.cell import Cell, Outcome
+from hil.cell import Cell
 from hil.config import load_cell
 from hil.interrupt import Interrupt, InterruptedRunError
 from hil.log_process import PATIENCE_S, LogProcess
@@ -21,65 +18,10 @@ from hil.log_reader import read_log
 from hil.metadata import metadata
 from hil.recorder import Recorder
 from hil.report import write_report
+from hil.run import ExitCode, Run
 from hil.summary import render_table, summarise
 from hil.terminal import OutputError, print_error, standard_output
 from hil.truth_probe import TruthProbe
-
-
-class ExitCode(IntEnum):
-    """What the process says of the run; a signal's number is added to SIGNAL."""
-
-    ALL_INSERTED = 0
-    NOT_ALL_INSERTED = 1
-    UNUSABLE_INPUT = 2
-    FAULT = 3
-    SIGNAL = 128
-
-
-@dataclass
-class Run:
-    """What has come of a run so far."""
-
-    asked: int
-    outcomes: list[Outcome] = field(default_factory=list)
-    error: TenonError | None = None
-
-    def fail(self, error: TenonError) -> None:
-        """Note why the run failed; what failed first counts, but no fault hides behind a signal."""
-        is_fault = not isinstance(error, InterruptedRunError | OutputError)
-        if self.error is None or (isinstance(self.error, InterruptedRunError) and is_fault):
-            self.error = error
-
-    @property
-    def inserted(self) -> int:
-        """Number of parts inserted."""
-        return sum(outcome.phase is SkillPhase.DONE for outcome in self.outcomes)
-
-    @property
-    def exit_code(self) -> int:
-        """What the process should return."""
-        if isinstance(self.error, InterruptedRunError):
-            return ExitCode.SIGNAL + self.error.signal_number
-        if self.error is not None:
-            return ExitCode.FAULT
-        if self.inserted == self.asked and self.outcomes[-1].is_clear:
-            return ExitCode.ALL_INSERTED
-        return ExitCode.NOT_ALL_INSERTED
-
-    @property
-    def early_end(self) -> str:
-        """In one sentence, why the run ended before its time; empty if it did not."""
-        if isinstance(self.error, InterruptedRunError):
-            return f"The run was {self.error}; the cell is held."
-        if self.error is not None:
-            return f"The run ended by a fault: {self.error}."
-        if self.outcomes and not self.outcomes[-1].is_clear:
-            last = self.outcomes[-1]
-            return (
-                f"The run ended with insertion {last.number}, which left the shaft in the part: "
-                f"{last.reason}."
-            )
-        return ""
 
 
 def run_cell(

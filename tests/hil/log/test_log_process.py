@@ -76,6 +76,7 @@ def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> No
     log = LogProcess(path, scenario.METADATA)
     recorder = Recorder(log)
     os.kill(_writer_pid(log), signal.SIGKILL)
+    log._process.join()
     died = rf"the process that writes the log {path} has died"
     with pytest.raises(LogError, match=died):
         _record_samples(recorder, 2000)
