@@ -53,7 +53,7 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
     cannot be written, or is one of the logs.
     """
     for source in (log, compared_with):
-        if source is not None and path.exists() and path.samefile(source.path):
+        if source is not None and path.resolve() == source.path.resolve():
             raise LogError(f"the report {path} would overwrite the log that it is made from")
     runs = _runs(log, compared_with)
     summary = runs[0].summary

@@ -10,9 +10,10 @@ import pytest
 import typer
 
 from controllers.control_loop import ControlLoop
+from drivers.arm.mock import MockArm
 from drivers.contract.clock import ManualClock
 from drivers.contract.errors import DeviceError
-from drivers.contract.messages import ForceSample, SensorStatus
+from drivers.contract.messages import ForceSample, Pose, SensorStatus
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
 from hil.log_reader import read_log
@@ -107,6 +108,28 @@ def test_a_stop_while_the_last_part_is_withdrawn(
     )
     assert ending in " ".join(capsys.readouterr().out.split())
     assert read_log(log).metadata["ending"]["text"].startswith(ending)
+
+
+def test_a_stop_while_the_last_part_is_taken_away(
+    log: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The shaft is out, but a latched stop is no success."""
+    move_to, read = MockArm.move_to, MockForceSensor.read
+    moves: list[Pose] = []
+
+    def read_fault(sensor: MockForceSensor, timeout_s: float) -> ForceSample:
+        return read(sensor, timeout_s)._replace(status=SensorStatus.FAULT)
+
+    def move_with_fault(arm: MockArm, target: Pose, speed_m_s: float) -> None:
+        moves.append(target)
+        if len(moves) == 2:
+            monkeypatch.setattr(MockForceSensor, "read", read_fault)
+        return move_to(arm, target, speed_m_s)
+
+    monkeypatch.setattr(MockArm, "move_to", move_with_fault)
+    assert run(log) == 3
+    said = " ".join(capsys.readouterr().out.split())
+    assert "The run ended by a fault: force sensor status: " in said
 
 
 def test_a_device_that_cannot_be_reached(
