@@ -10,12 +10,12 @@ import pytest
 import typer
 
 from controllers.control_loop import ControlLoop
-from drivers.arm.mock import MockArm
 from drivers.contract.clock import ManualClock
 from drivers.contract.errors import DeviceError
 from drivers.contract.messages import ForceSample, Pose, SensorStatus
 from drivers.force_sensor.mock import MockForceSensor
 from drivers.stage.mock import MockStage
+from hil.cell import Cell
 from hil.log_reader import read_log
 from hil.run_cell import run_cell
 
@@ -114,19 +114,20 @@ def test_a_stop_while_the_last_part_is_taken_away(
     log: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The shaft is out, but a latched stop is no success."""
-    move_to, read = MockArm.move_to, MockForceSensor.read
-    moves: list[Pose] = []
+    move_arm, read = Cell._move_arm, MockForceSensor.read
+    targets: list[Pose] = []
 
     def read_fault(sensor: MockForceSensor, timeout_s: float) -> ForceSample:
         return read(sensor, timeout_s)._replace(status=SensorStatus.FAULT)
 
-    def move_with_fault(arm: MockArm, target: Pose, speed_m_s: float) -> None:
-        moves.append(target)
-        if len(moves) == 2:
+    def move_then_fault(cell: Cell, target: Pose) -> None:
+        move_arm(cell, target)
+        targets.append(target)
+        if len(targets) == 2:
             monkeypatch.setattr(MockForceSensor, "read", read_fault)
-        return move_to(arm, target, speed_m_s)
+            cell._loop.tick()
 
-    monkeypatch.setattr(MockArm, "move_to", move_with_fault)
+    monkeypatch.setattr(Cell, "_move_arm", move_then_fault)
     assert run(log) == 3
     said = " ".join(capsys.readouterr().out.split())
     assert "The run ended by a fault: force sensor status: " in said
