@@ -9,7 +9,6 @@ export OPENBLAS_NUM_THREADS := 1
 .PHONY: run test quick check fuzz bench mutation figures clean
 
 run: $(READY)  ## insert 30 parts on the mock cell; log and report go to runs/
-	@mkdir -p $(dir $(LOG))
 	$(BIN)/python hil/run_cell.py --config config/mock_cell.yaml --insertions 30 \
 		--controller expert --seed 1 --log $(LOG)
 

@@ -69,7 +69,11 @@ def main(seconds: float) -> None:
     stopwatch = Stopwatch(round(seconds * rate_Hz))
     with tempfile.TemporaryDirectory() as folder:
         recorder = Recorder(
-            LogProcess(Path(folder) / "run.mcap", metadata(config, "expert", 1, 1, True))
+            LogProcess(
+                Path(folder) / "run.mcap",
+                metadata(config, "expert", 1, 1, True),
+                patience_s=0.0,
+            )
         )
         cell.follow(recorder)
         cell.follow(stopwatch)

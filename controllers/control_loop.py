@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from controllers.force_filter import ForceFilter
 from controllers.gate import Gate
+from controllers.governor import Travel
 from controllers.insertion import REACHED_M, InsertionSkill
+from controllers.limits import Limits
 from controllers.messages import (
     ForceEstimate,
     Observation,
@@ -27,8 +29,8 @@ from drivers.contract.interfaces import ForceSensor
 from drivers.contract.messages import ForceSample, Pose, StageState, Vector3
 
 _SILENT_PERIODS = 3
-_STEP_TIMEOUT_NS = 5_000_000_000
-"""Longer than any step in the step box takes at creep speed."""
+_STEP_MARGIN_S = 5.0
+"""For starting and braking, and for telemetry, on top of the time that a step takes at speed."""
 
 _TICKS_BETWEEN_TRIES = 50
 """Under a hold a controller is asked again at most every so many samples."""
@@ -91,6 +93,7 @@ class ControlLoop:
         self._settle_s = settle_s
         self._subscribers: list[Subscriber] = []
         self._timeout_s = _SILENT_PERIODS / sensor.rate_Hz
+        self._step_timeout_s = _longest_step_s(gate.limits) + settle_s + _STEP_MARGIN_S
         self._sample: ForceSample | None = None
         self._proposals = 0
         self._lame_steps = 0
@@ -224,7 +227,7 @@ class ControlLoop:
 
     def _settle(self, sent: Sent) -> Step:
         hardest = sent.verdict
-        deadline_ns = sent.stamp_ns + _STEP_TIMEOUT_NS
+        deadline_ns = sent.stamp_ns + round(self._step_timeout_s * 1e9)
         rest_ns: int | None = None
         while True:
             tick = self.tick()
@@ -237,7 +240,7 @@ class ControlLoop:
                 return Step(sent, hardest, tick)
             if tick.end_ns > deadline_ns:
                 raise DeviceTimeoutError(
-                    f"the stage has not come to rest within {_STEP_TIMEOUT_NS * 1e-9:.0f} s"
+                    f"the stage has not come to rest within {self._step_timeout_s:.0f} s"
                 )
 
 
@@ -262,3 +265,11 @@ def _stage(tick: Tick) -> StageState:
     if tick.snapshot.stage is None:
         raise DeviceError("there is no stage state yet")
     return tick.snapshot.stage
+
+
+def _longest_step_s(limits: Limits) -> float:
+    """Return the time [s] of the longest step in the step box, at creep speed all the way."""
+    turn = limits.rotation_step_rad
+    travel = Travel.of(limits.step_m, (turn, turn, turn), limits.lever_m)
+    slowest_m_s = min(limits.creep_speed_m_s, limits.speed_m_s)
+    return travel.length_m / slowest_m_s + travel.angle_rad / limits.angular_speed_rad_s

@@ -207,7 +207,7 @@ class PhaseChange:
     reason: str
     """Why; empty where the phase is the ordinary next one."""
     steps: int
-    """Steps proposed in the insert phase so far."""
+    """Steps sent in the insert phase so far."""
 
 
 class Tick(NamedTuple):

@@ -20,7 +20,7 @@ from controllers.messages import ResetRecord, Severity, SkillPhase, Tick
 from controllers.proportional import ProportionalController
 from drivers.backends import DeviceClass, device_class
 from drivers.contract.clock import Clock
-from drivers.contract.errors import ConfigurationError, DeviceTimeoutError
+from drivers.contract.errors import ConfigurationError, DeviceTimeoutError, SafetyError
 from drivers.contract.interfaces import Arm, Device, ForceSensor, Gripper, Stage
 from drivers.contract.messages import Pose
 from drivers.mock_world import MockWorld, WorldSettings
@@ -41,6 +41,7 @@ class Outcome:
     number: int
     phase: SkillPhase
     reason: str
+    """Why it failed, or why the shaft could not be taken out afterwards; empty if all went well."""
     steps: int
     is_clear: bool
     """Whether the cell has put the part away and is ready for the next one."""
@@ -87,6 +88,7 @@ class Cell:
         arm = cast(Arm, build(DeviceClass.ARM, config.arm))
         gripper = cast(Gripper, build(DeviceClass.GRIPPER, config.gripper))
         self._devices: tuple[Device, ...] = (sensor, stage, arm, gripper)
+        self._closing = ExitStack()
         self._gate = Gate(config.limits, self._hold_pose, stage, arm, gripper)
         period_s = 1.0 / sensor.rate_Hz
         self._loop = ControlLoop(
@@ -104,7 +106,9 @@ class Cell:
     def connect(self) -> None:
         """Connect all devices; raises DeviceError where one cannot be reached."""
         for device in self._devices:
+            self._closing.callback(device.close)
             device.connect()
+        self._closing.callback(self._gate.hold)
 
     def insert_part(self, number: int) -> Outcome:
         """Pick a part, bring it, tare, insert, let go and withdraw, or put it back after a failure.
@@ -124,8 +128,10 @@ class Cell:
             config.skill, config.part.insertion, controller, config.limits.step_m
         )
         self._loop.insert(skill, number, self._controller_name)
-        is_clear = not self._gate.latched and self._put_away(skill.phase)
-        return Outcome(number, skill.phase, skill.reason, skill.steps, is_clear)
+        obstacle = self._latched() or self._put_away(skill.phase)
+        return Outcome(
+            number, skill.phase, skill.reason or obstacle, skill.steps, is_clear=not obstacle
+        )
 
     def hold(self) -> None:
         """Bring everything to rest where it is, and turn the loop until that is on file."""
@@ -143,27 +149,31 @@ class Cell:
 
     def close(self) -> None:
         """Halt what moves and close the devices; one that fails does not keep the others open."""
-        with ExitStack() as closing:
-            for device in self._devices:
-                closing.callback(device.close)
-            closing.callback(self._gate.hold)
+        self._closing.close()
 
-    def _put_away(self, phase: SkillPhase) -> bool:
-        """Return whether the next part may come."""
+    def _latched(self) -> str:
+        return "; ".join(str(reason) for reason in self._gate.latched)
+
+    def _put_away(self, phase: SkillPhase) -> str:
+        """Make the cell ready for the next part; return why the shaft stays in this one, if so.
+
+        Raises SafetyError for a stop that comes once the shaft is out.
+        """
+        config, is_out = self._config, True
         if phase is SkillPhase.DONE:
             self._switch_valve(False)
-            if not self._loop.withdraw(
-                self._config.skill.start_depth_m, self._config.limits.step_m[2]
-            ):
-                return False
+            is_out = self._loop.withdraw(config.skill.start_depth_m, config.limits.step_m[2])
         tick = self._loop.wait(_CALM_S)
         stage = tick.snapshot.stage
-        if stage is None or stage.pose.position[2] > self._config.limits.clear_depth_m:
-            return False
+        if not is_out or stage is None or stage.pose.position[2] > config.limits.clear_depth_m:
+            reasons = "; ".join(str(reason) for reason in tick.verdict.reasons)
+            return self._latched() or reasons or "the shaft was not withdrawn"
         self._move_arm(self._tray_pose)
         if phase is not SkillPhase.DONE:
             self._switch_valve(False)
-        return True
+        if self._gate.latched:
+            raise SafetyError(self._latched())
+        return ""
 
     def _switch_valve(self, is_open: bool) -> None:
         self._loop.wait(_CALM_S)

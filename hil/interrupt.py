@@ -1,11 +1,26 @@
-"""Ctrl-C and SIGTERM: the run ends between two ticks, never in the middle of one."""
+"""Signals that ask a run to end: it ends between two ticks, never in the middle of one."""
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType
 
 from controllers.control_loop import Subscriber
 from controllers.messages import Tick
 from drivers.contract.errors import TenonError
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP)
+"""Ctrl-C, kill, a lost terminal, and Ctrl-Z: no loop may sleep while its stage moves."""
+
+
+@contextmanager
+def signals_blocked() -> Iterator[None]:
+    """Keep back the signals that ask a run to end."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class InterruptedRunError(TenonError):
@@ -17,28 +32,35 @@ class InterruptedRunError(TenonError):
 
 
 class Interrupt(Subscriber):
-    """Notes SIGINT and SIGTERM while it is entered, and raises at the end of the running tick.
+    """Notes the first such signal while it is entered, and raises at the end of the running tick.
 
-    Be the last subscriber of the loop, so that the tick has been recorded when it raises.
+    Further signals change nothing: the run is ending already. A hangup that is ignored, as under
+    nohup, stays ignored. Be the last subscriber of the loop, so that the tick has been recorded.
     """
 
     def __init__(self) -> None:
-        self._signal_number: int | None = None
+        self._noted: int | None = None
+        self._has_raised = False
+        self._before: dict[int, signal._HANDLER] = {}
 
     def __enter__(self) -> "Interrupt":
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._note)
+        for number in _SIGNALS:
+            before = signal.getsignal(number)
+            if not (number is signal.SIGHUP and before is signal.SIG_IGN):
+                self._before[number] = before
+                signal.signal(number, self._note)
         return self
 
     def __exit__(self, *_: object) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        for number, before in self._before.items():
+            signal.signal(number, before)
 
     def on_tick(self, tick: Tick) -> None:
         """Raise InterruptedRunError once after a signal."""
-        number, self._signal_number = self._signal_number, None
-        if number is not None:
-            raise InterruptedRunError(number)
+        if self._noted is not None and not self._has_raised:
+            self._has_raised = True
+            raise InterruptedRunError(self._noted)
 
     def _note(self, signal_number: int, _: FrameType | None) -> None:
-        self._signal_number = signal_number
+        if self._noted is None:
+            self._noted = signal_number

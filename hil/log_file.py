@@ -114,7 +114,7 @@ class LogFile:
         except OSError as error:
             raise LogError(f"cannot create the log {path}: {error.strerror}") from error
         try:
-            self._writer = Writer(self._stream)
+            self._writer = Writer(self._stream, enable_data_crcs=True)
             self._writer.start(profile="ros2")
             self._writer.add_metadata(FORMAT_RECORD, {"version": FORMAT_VERSION})
             for name, entries in metadata.items():

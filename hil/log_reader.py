@@ -9,7 +9,7 @@ from typing import BinaryIO, TypeVar
 
 import numpy as np
 from mcap.exceptions import McapError, RecordLengthLimitExceeded
-from mcap.records import Channel, Header, Message, Metadata, Schema, Statistics
+from mcap.records import Channel, DataEnd, Header, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from numpy.typing import NDArray
 from rosbags.serde import SerdeError
@@ -220,7 +220,6 @@ def _read(path: Path, stream: BinaryIO) -> _Contents:
     contents = _Contents(ending=_CUT_OFF)
     schemas: dict[int, Schema] = {}
     topics: dict[int, Topic | None] = {}
-    message_count = 0
     try:
         for record in records:
             if isinstance(record, Metadata):
@@ -230,13 +229,11 @@ def _read(path: Path, stream: BinaryIO) -> _Contents:
             elif isinstance(record, Channel) and record.id not in topics:
                 topics[record.id] = _topic(path, record, schemas.get(record.schema_id))
             elif isinstance(record, Message):
-                message_count += 1
                 topic = topics.get(record.channel_id)
                 if topic is not None:
                     contents.messages[topic].append(record)
-            elif isinstance(record, Statistics):
-                whole = record.message_count == message_count
-                contents.ending = "" if whole else "it is damaged: messages are missing"
+            elif isinstance(record, DataEnd):
+                contents.ending = ""
     except RecordLengthLimitExceeded:
         contents.ending = _CUT_OFF
     except _DAMAGE as error:

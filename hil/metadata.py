@@ -15,7 +15,7 @@ def metadata(
     """Return the log's metadata records by name.
 
     The files of cell, limits and part are held word by word, each with its SHA-256; the limits in
-    force, which a part may have tightened, in SI units.
+    force, which part and stage may have tightened, in SI units.
     """
     cell, limits, part = config.sources
     return {

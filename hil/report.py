@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
-from rich.console import Console
 
 from controllers.messages import ResetRecord, Severity
 from drivers.contract.errors import LogError, TenonError
@@ -23,6 +23,7 @@ from hil.summary import (
     summarise,
 )
 from hil.summary.words import MEANINGS, SEVERITIES, early_end, tally
+from hil.terminal import print_error, standard_output
 
 _UNUSABLE_INPUT = 2
 
@@ -49,8 +50,11 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
     """Write the report of `log` to `path`; the same log gives the same bytes.
 
     The forces of `compared_with` are shown beside those of `log`. Raises LogError where the file
-    cannot be written.
+    cannot be written, or is one of the logs.
     """
+    for source in (log, compared_with):
+        if source is not None and path.resolve() == source.path.resolve():
+            raise LogError(f"the report {path} would overwrite the log that it is made from")
     runs = _runs(log, compared_with)
     summary = runs[0].summary
     page = _template().render(
@@ -73,9 +77,19 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
         governor=figures.governor_figure(log, summary),
         timing=figures.timing_figure(log),
     )
+    _replace(path, page)
+
+
+def _replace(path: Path, page: str) -> None:
+    """Write a whole page or leave the one before."""
+    place = path.resolve()
+    partial = place.with_name(f".{place.name}.part")
     try:
-        path.write_text(page, encoding="utf-8")
+        partial.write_text(page, encoding="utf-8")
+        partial.replace(place)
     except OSError as error:
+        with suppress(OSError):
+            partial.unlink()
         raise LogError(f"cannot write the report {path}: {error.strerror}") from error
 
 
@@ -177,10 +191,11 @@ def report(
     page = output or log.with_suffix(".html")
     try:
         write_report(read_log(log), page, read_log(compare) if compare else None)
+        with standard_output() as console:
+            console.print(f"Report: {page}", soft_wrap=True, markup=False, highlight=False)
     except TenonError as error:
-        Console(stderr=True).print(f"error: {error}", soft_wrap=True, markup=False, highlight=False)
+        print_error(error)
         raise typer.Exit(_UNUSABLE_INPUT) from error
-    Console().print(f"Report: {page}", soft_wrap=True, markup=False, highlight=False)
 
 
 if __name__ == "__main__":

@@ -44,6 +44,18 @@ def cell_problems(limits: Limits, cell: CellSettings) -> Iterator[str]:
         yield f"{force} is not valid: must not exceed any of {_limit(limits, 'force_N')}"
 
 
+def workspace_problems(machine: Limits) -> Iterator[str]:
+    """Yield a line for each side of the workspace that leaves out x = y = 0, where parts wait."""
+    sides = zip("xy", machine.workspace_min_m, machine.workspace_max_m, strict=False)
+    for axis, low, high in sides:
+        if low > 0.0:
+            lowest = written(Limits, "workspace_min_m", machine.workspace_min_m)
+            yield f"{lowest} is not valid: must not exceed 0 along {axis}"
+        if high < 0.0:
+            highest = written(Limits, "workspace_max_m", machine.workspace_max_m)
+            yield f"{highest} is not valid: must not be below 0 along {axis}"
+
+
 def stage_problems(machine: Limits, stage: StageSettings) -> Iterator[str]:
     """Yield a line for each limit of the stage itself that does not fit the machine's."""
     for attribute in ("speed_m_s", "angular_speed_rad_s"):

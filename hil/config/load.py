@@ -18,7 +18,13 @@ from drivers.contract.device_settings import (
 from drivers.contract.errors import ConfigurationError
 from drivers.contract.settings import Settings
 from hil.config.cell import ArmPoses, CellSettings
-from hil.config.checks import cell_problems, part_problems, rate_problems, stage_problems
+from hil.config.checks import (
+    cell_problems,
+    part_problems,
+    rate_problems,
+    stage_problems,
+    workspace_problems,
+)
 from hil.config.part import PartSettings
 
 DeviceSettings = TypeVar("DeviceSettings", bound=Settings)
@@ -37,7 +43,7 @@ class CellConfig:
     """Everything that a cell is built from, valid as a whole."""
 
     limits: Limits
-    """The machine's, tightened by the part's."""
+    """The machine's, tightened by the part's and by the speeds that the stage allows itself."""
     part: PartSettings
     force_sensor: DeviceConfig[ForceSensorSettings]
     stage: DeviceConfig[StageSettings]
@@ -82,6 +88,7 @@ def load_cell(path: Path, part_override: Path | None = None) -> CellConfig:
     for file, lines in (
         (part_path, part_problems(limits, part)),
         (path, cell_problems(limits, cell)),
+        (limits_path, workspace_problems(machine)),
         (path, stage_problems(machine, stage.settings)),
         (path, rate_problems(limits, sensor.settings, telemetry)),
     ):
@@ -90,7 +97,7 @@ def load_cell(path: Path, part_override: Path | None = None) -> CellConfig:
     if problems:
         raise problems.error()
     return CellConfig(
-        limits=limits,
+        limits=_slowed(limits, stage.settings),
         part=part,
         force_sensor=sensor,
         stage=stage,
@@ -136,3 +143,10 @@ def _tightened(problems: Problems, path: Path, machine: Limits, part: PartLimits
         for line in str(error).splitlines():
             problems.add(path, f"limits.{line}")
         return machine
+
+
+def _slowed(limits: Limits, stage: StageSettings) -> Limits:
+    """Return `limits` with the stage's own speed limits where those are lower."""
+    names = ("speed_m_s", "angular_speed_rad_s")
+    slower = {name: min(getattr(limits, name), getattr(stage, name)) for name in names}
+    return limits.model_copy(update=slower)

@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import accumulate
+from pathlib import Path
 
-import yaml
 from pydantic import BaseModel, ConfigDict, NonNegativeInt
 
+from drivers.contract.configuration.yaml_loader import parse_yaml
+from drivers.contract.errors import ConfigurationError
 from drivers.contract.messages import Vector3
 from hil.log_file import ENDING_RECORD
 
@@ -66,7 +68,7 @@ class RunFacts:
 def run_facts(metadata: Mapping[str, Mapping[str, str]]) -> RunFacts:
     """Return the facts in a log's metadata. What is missing or cannot be read is left out."""
     run = _run(metadata.get("run", {}))
-    part = _part(metadata.get("part", {}).get("text", ""))
+    part = _part(metadata.get("part", {}))
     return RunFacts(
         part=part.name if part else "",
         walls_m=_walls(part.holes) if part else (),
@@ -86,10 +88,12 @@ def _run(entries: Mapping[str, str]) -> _Run | None:
         return None
 
 
-def _part(text: str) -> _Part | None:
+def _part(entries: Mapping[str, str]) -> _Part | None:
+    """Read a part as the run did: other YAML readers take a name such as `on` for a boolean."""
     try:
-        return _Part.model_validate(yaml.safe_load(text))
-    except (yaml.YAMLError, ValueError):
+        content = parse_yaml(Path(entries.get("file", "")), entries.get("text", ""))
+        return _Part.model_validate(content)
+    except (ConfigurationError, ValueError):
         return None
 
 

@@ -252,7 +252,7 @@ def test_a_stamp_that_does_not_advance_restarts_the_filter() -> None:
     assert back.wrench[0] == pytest.approx(5e-3, abs=1e-3)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.lists(st.floats(0.2, 20.0), min_size=2, max_size=40), st.integers(0, 2**32 - 1))
 def test_irregular_sampling_stays_sane(gaps_ms: list[float], seed: int) -> None:
     force_filter = tared()

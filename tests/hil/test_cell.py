@@ -1,5 +1,7 @@
 """The whole mock cell on simulated time: what its users see of it."""
 
+import re
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -365,3 +367,38 @@ def test_a_stage_that_falls_short_is_followed_up(monkeypatch: pytest.MonkeyPatch
     cell, _, _ = make_cell()
     monkeypatch.setattr(MockStage, "move_to", lame(1, 0.5))
     assert cell.insert_part(1).phase is SkillPhase.DONE
+
+
+@pytest.mark.parametrize(
+    ("file", "pattern", "text", "speed_m_s"),
+    [
+        ("mock_cell.yaml", r"speed_limit_mm_s: 5(?=\n  angular)", "speed_limit_mm_s: 2", 2e-3),
+        ("parts/paper_online.yaml", r"\Z", "limits: {speed_limit_mm_s: 0.01}\n", 1e-5),
+        ("mock_cell.yaml", r"settle_time_ms: 10", "settle_time_ms: 6000", 5e-3),
+    ],
+)
+def test_slow_steps_take_their_time(
+    tmp_path: Path, file: str, pattern: str, text: str, speed_m_s: float
+) -> None:
+    shutil.copytree(CONFIG, tmp_path / "config")
+    path = tmp_path / "config" / file
+    path.write_text(re.sub(pattern, text, path.read_text(), count=1))
+    config = load_cell(tmp_path / "config" / "mock_cell.yaml")
+    cell = Cell(config, "expert", ManualClock(), np.random.default_rng(1))
+
+    class EnoughError(Exception):
+        pass
+
+    speeds_m_s: list[float] = []
+
+    class Steps(Subscriber):
+        def on_sent(self, answer: Sent) -> None:
+            speeds_m_s.append(answer.speed_m_s)
+            if len(speeds_m_s) == 2:
+                raise EnoughError
+
+    cell.follow(Steps())
+    cell.connect()
+    with pytest.raises(EnoughError):
+        cell.insert_part(1)
+    assert 0.0 < speeds_m_s[0] <= speed_m_s

@@ -1,11 +1,7 @@
 """The command, as its users call it."""
 
-import os
 import re
 import shutil
-import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -13,28 +9,9 @@ import pytest
 
 from controllers.messages import SkillPhase
 from hil.log_reader import read_log
+from tests.hil.command import MOCK, ROOT, run
 
 pytestmark = pytest.mark.slow
-
-ROOT = Path(__file__).parents[2]
-MOCK = "config/mock_cell.yaml"
-
-
-def start(*arguments: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "hil/run_cell.py", *arguments],
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"COLUMNS": "100", "TERM": "dumb"},
-    )
-
-
-def run(*arguments: str) -> tuple[int, str, str]:
-    process = start(*arguments)
-    out, err = process.communicate(timeout=600)
-    return process.returncode, out, err
 
 
 def test_thirty_parts_are_inserted_within_the_papers_figures(tmp_path: Path) -> None:
@@ -69,31 +46,8 @@ def test_a_stop_by_the_supervisor_ends_the_run_and_is_explained(tmp_path: Path) 
     assert read_log(log).complete
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_holds_the_cell_and_finishes_the_file(
-    tmp_path: Path, number: signal.Signals, code: int
-) -> None:
-    log = tmp_path / "run.mcap"
-    process = start("--config", MOCK, "--insertions", "1000", "--log", str(log))
-    while not log.exists() or log.stat().st_size < 300_000:
-        assert process.poll() is None
-        time.sleep(0.05)
-    process.send_signal(number)
-    out, err = process.communicate(timeout=120)
-    assert (process.returncode, err) == (code, "")
-    said = " ".join(out.split())
-    ending = f"The run was interrupted by {number.name}; the cell is held and the log is complete."
-    assert said.count(ending) == 1
-    assert ending in log.with_suffix(".html").read_text()
-    recorded = read_log(log)
-    assert recorded.metadata["ending"] == {"text": ending}
-    assert recorded.complete
-    velocity = recorded.stage_twist.velocity[-1]
-    assert (velocity == 0.0).all()
-
-
 def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
-    logs = [tmp_path / f"{name}.mcap" for name in "abc"]
+    logs = [tmp_path / "runs" / "monday" / f"{name}.mcap" for name in "abc"]
     for log, seed in zip(logs, ("3", "3", "4"), strict=True):
         code, _, err = run("--config", MOCK, "--seed", seed, "--log", str(log))
         assert (code, err) == (0, "")
@@ -131,7 +85,9 @@ def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path) -> None:
         (("--config", "config/nowhere.yaml"), "error: config/nowhere.yaml: cannot be read"),
         (("--controller", "ddpg"), "error: controller 'ddpg' is not valid: one of expert, p is"),
         (("--part", "config/limits.yaml"), "error: config/limits.yaml: "),
-        (("--log", "nowhere/run.mcap"), "error: cannot create the log nowhere/run.mcap"),
+        (("--log", "Makefile/r.mcap"), "error: cannot create the folder Makefile: File exists"),
+        (("--log", "runs/a.html"), "error: the log runs/a.html is not valid: its name must end"),
+        (("--log", "runs/r.1"), "error: the log runs/r.1 is not valid: its name must end in .mcap"),
     ],
 )
 def test_unusable_input_ends_before_anything_moves(

@@ -65,7 +65,7 @@ def test_no_jump_on_the_way_through_every_rim_plane(
     assert_no_jump(wrenches, 1e-7)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(
     st.tuples(*[st.floats(-1.2e-5, 1.2e-5)] * 2),
     st.tuples(*[st.floats(-6e-3, 6e-3)] * 2),
@@ -86,7 +86,7 @@ def test_no_jump_in_any_direction_where_an_edge_meets_a_rim(
     assert_no_jump(wrenches_along(pose, unit, 2e-5, 400), 1e-7)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(
     st.tuples(*[st.floats(-1.2e-5, 1.2e-5)] * 2),
     st.tuples(*[st.floats(-6e-3, 6e-3)] * 2),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator import extremum
@@ -64,7 +64,6 @@ def test_more_newton_steps_change_nothing(monkeypatch: pytest.MonkeyPatch) -> No
     assert np.abs(usual - more)[:, apart].max() < 1e-12
 
 
-@settings(deadline=None)
 @given(sizes, sizes, sizes, st.sampled_from([-1.0, 1.0]), st.sampled_from([-1.0, 1.0]))
 def test_no_point_of_a_dense_circle_is_better(
     a: float, c: float, b: float, sign_a: float, sign_c: float

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.candidates import candidates
@@ -96,7 +96,6 @@ def test_signs_and_order_of_the_tilt() -> None:
     np.testing.assert_allclose(axes[2], expected)
 
 
-@settings(deadline=None)
 @given(tilts, tilts)
 def test_tilt_of_inverts_the_axis(rx: float, ry: float) -> None:
     axis = shaft_axis([0.0, 0.0, 0.0, rx, ry])

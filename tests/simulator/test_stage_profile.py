@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.plant import Trapezoid, braking
@@ -58,7 +58,6 @@ def test_braking_takes_the_shortest_way_to_rest() -> None:
     assert braking(0.0, 1.0).duration_s == 0.0
 
 
-@settings(deadline=None)
 @given(distances, speeds, limits, accelerations)
 def test_limits_hold_and_the_motion_ends_at_rest(
     distance: float, start: float, limit: float, acceleration: float
@@ -90,7 +89,6 @@ def test_limits_hold_and_the_motion_ends_at_rest(
     assert (np.abs(np.diff(x) - mean) <= 0.25 * acceleration * dt * dt + 1e-12 * distance).all()
 
 
-@settings(deadline=None)
 @given(st.floats(1e-5, 1e-1), accelerations)
 def test_a_start_that_cannot_stop_in_time_is_refused(start: float, acceleration: float) -> None:
     stopping = 0.5 * start * start / acceleration

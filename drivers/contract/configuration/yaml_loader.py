@@ -42,16 +42,19 @@ def read_yaml(path: Path) -> tuple[SourceFile, dict[str, Plain]]:
         content = path.read_bytes()
     except OSError as error:
         raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise ConfigurationError(f"{str(path)!r}: cannot be read: {error}") from error
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise ConfigurationError(f"{path}, line {line}: is not UTF-8 text") from error
     source = SourceFile(path, text, hashlib.sha256(content).hexdigest())
-    return source, _parse(path, text)
+    return source, parse_yaml(path, text)
 
 
-def _parse(path: Path, text: str) -> dict[str, Plain]:
+def parse_yaml(path: Path, text: str) -> dict[str, Plain]:
+    """Return what `text`, the content of `path`, holds; raises ConfigurationError as read_yaml."""
     try:
         node = _Loader(text).get_single_node()
         if node is None:

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.contract.errors import ConfigurationError
@@ -312,7 +312,6 @@ VALUES = st.recursive(
 )
 
 
-@settings(deadline=None)
 @given(st.sampled_from((*KEYS, *GROUPS)), VALUES)
 def test_any_value_is_taken_or_refused_in_lines_that_name_the_file(
     tmp_path_factory: pytest.TempPathFactory, row: Key | Group, value: object

@@ -1,5 +1,7 @@
 """Files that are valid one by one but do not fit together."""
 
+import math
+
 import pytest
 
 from tests.hil.config.cell_files import Files, Load, Refuse, parent, shipped
@@ -243,10 +245,48 @@ def test_creep_faster_than_a_tenth_of_the_speed_limit(refuse: Refuse) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("key", "value", "shown", "valid"),
+    [
+        ("workspace_min_um", [1, -200, -1000], "[1, -200, -1000]", "must not exceed 0 along x"),
+        ("workspace_min_um", [-200, 1, -1000], "[-200, 1, -1000]", "must not exceed 0 along y"),
+        ("workspace_max_um", [-1, 200, 3600], "[-1, 200, 3600]", "must not be below 0 along x"),
+        ("workspace_max_um", [200, -1, 3600], "[200, -1, 3600]", "must not be below 0 along y"),
+    ],
+)
+def test_workspace_without_the_place_of_the_part(
+    key: str, value: object, shown: str, valid: str, refuse: Refuse
+) -> None:
+    assert refuse(changed((LIMITS, key, value))) == (
+        f"config/limits.yaml: {key} = {shown} is not valid: {valid}"
+    )
+
+
+def test_the_lowest_of_all_speed_limits_is_in_force(load: Load) -> None:
+    own = load(
+        changed(
+            (CELL, "stage.speed_limit_mm_s", 2),
+            (CELL, "stage.angular_speed_limit_deg_s", 0.5),
+        )
+    ).limits
+    assert (own.speed_m_s, own.angular_speed_rad_s) == (0.002, math.radians(0.5))
+    parts = load(
+        changed((CELL, "stage.speed_limit_mm_s", 2), (PART, "limits.speed_limit_mm_s", 1))
+    ).limits
+    assert parts.speed_m_s == 0.001
+
+
 @pytest.mark.parametrize("key", ["limits", "part"])
 def test_file_that_is_not_there(key: str, refuse: Refuse) -> None:
     assert refuse(changed((CELL, key, "parts/nowhere.yaml"))) == (
         "config/parts/nowhere.yaml: cannot be read: No such file or directory"
+    )
+
+
+@pytest.mark.parametrize("key", ["limits", "part"])
+def test_file_whose_name_no_file_can_have(key: str, refuse: Refuse) -> None:
+    assert refuse(changed((CELL, key, "parts/a\0b.yaml"))) == (
+        "'config/parts/a\\x00b.yaml': cannot be read: embedded null byte"
     )
 
 

@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.contract.configuration.yaml_loader import read_yaml
@@ -145,7 +145,6 @@ def test_source_is_the_exact_file(file: Path) -> None:
     assert source.sha256 == hashlib.sha256(content).hexdigest()
 
 
-@settings(deadline=None)
 @given(st.text() | st.binary())
 def test_any_content_is_read_or_refused_in_one_line(
     tmp_path_factory: pytest.TempPathFactory, content: str | bytes

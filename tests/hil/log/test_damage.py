@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
@@ -78,7 +78,6 @@ def _read_or_refuse(path: Path, content: bytes) -> Log | None:
         return None
 
 
-@settings(deadline=None)
 @given(share=SHARES)
 def test_a_cut_off_log_is_read_up_to_the_cut(whole: Whole, share: float) -> None:
     length = _place(share, 0, len(whole.content))
@@ -91,7 +90,6 @@ def test_a_cut_off_log_is_read_up_to_the_cut(whole: Whole, share: float) -> None
     assert _is_prefix(found, whole.log)
 
 
-@settings(deadline=None)
 @given(share=SHARES, value=BYTES)
 def test_an_altered_log_is_refused_or_says_that_it_is_damaged_or_says_the_same(
     whole: Whole, share: float, value: bytes
@@ -102,7 +100,6 @@ def test_an_altered_log_is_refused_or_says_that_it_is_damaged_or_says_the_same(
         assert rows(found) == rows(whole.log) or not found.complete
 
 
-@settings(deadline=None)
 @given(share=SHARES, value=BYTES)
 def test_an_altered_index_does_not_matter(whole: Whole, share: float, value: bytes) -> None:
     place = _place(share, whole.summary_place, len(whole.content))
@@ -117,7 +114,17 @@ def test_a_lost_chunk_is_noticed(whole: Whole) -> None:
         found = _read_or_refuse(whole.folder / "altered.mcap", altered)
         assert found is not None
         assert rows(found) != rows(whole.log)
-        assert found.ending == "it is damaged: messages are missing"
+        assert found.ending.startswith("it is damaged before byte")
+
+
+def test_an_altered_record_of_metadata_is_noticed(whole: Whole) -> None:
+    place = whole.content.index(b"hole_diameter_um: 1010") + len("hole_diameter_um: 10")
+    found = _read_or_refuse(whole.folder / "altered.mcap", _altered(whole, place, b"2"))
+    assert found is not None
+    assert found.metadata["configuration"]["text"] == "hole_diameter_um: 1020\n"
+    assert not found.complete
+    assert found.ending.startswith("it is damaged before byte")
+    assert rows(found) == rows(whole.log)
 
 
 @pytest.mark.parametrize(

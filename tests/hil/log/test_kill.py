@@ -16,7 +16,9 @@ from tests.hil.log import node_reader, scenario
 pytestmark = pytest.mark.slow
 
 LOSS_NS = 100_000_000
-RUN_MS = 1000
+RUN_MS = 3000
+LATEST_KILL_S = 0.9
+"""A killer that is late still finds the run going."""
 KILLS = 24
 SEED = 20240229
 
@@ -47,7 +49,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> list[Killed]:
     """Logs of writers that were killed at random moments."""
     folder = tmp_path_factory.mktemp("killed")
     rng = random.Random(SEED)  # noqa: S311
-    moments_s = [rng.uniform(0.0, 0.9e-3 * RUN_MS) for _ in range(KILLS)]
+    moments_s = [rng.uniform(0.0, LATEST_KILL_S) for _ in range(KILLS)]
     arguments = [str(folder), str(SEED), str(RUN_MS), *map(str, moments_s)]
     subprocess.run([sys.executable, "-m", "tests.hil.log.killed_writers", *arguments], check=True)
     return [

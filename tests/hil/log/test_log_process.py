@@ -1,11 +1,12 @@
 """A log in a process of its own holds what a plain one holds; its writer outlives its sender."""
 
-import multiprocessing
+import contextlib
 import os
 import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from pathlib import Path
 
@@ -28,10 +29,10 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "run.mcap"
 
 
-def _writer_pid() -> int:
-    (writer,) = multiprocessing.active_children()
-    assert writer.pid is not None
-    return writer.pid
+def _writer_pid(log: LogProcess) -> int:
+    pid = log._process.pid
+    assert pid is not None
+    return pid
 
 
 def _sample(ms: int) -> ForceSample:
@@ -75,7 +76,8 @@ def test_what_is_flushed_comes_to_the_disk_without_more(path: Path) -> None:
 def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> None:
     log = LogProcess(path, scenario.METADATA)
     recorder = Recorder(log)
-    os.kill(_writer_pid(), signal.SIGKILL)
+    os.kill(_writer_pid(log), signal.SIGKILL)
+    log._process.join()
     died = rf"the process that writes the log {path} has died"
     with pytest.raises(LogError, match=died):
         _record_samples(recorder, 2000)
@@ -88,19 +90,82 @@ def test_a_writer_that_dies_is_an_error_and_leaves_what_it_had(path: Path) -> No
 
 def test_a_writer_that_dies_before_the_end_is_an_error_at_the_end(path: Path) -> None:
     log = LogProcess(path, {})
-    os.kill(_writer_pid(), signal.SIGSTOP)
+    os.kill(_writer_pid(log), signal.SIGSTOP)
     log.write("/force/raw", b"", 0, 0)
-    os.kill(_writer_pid(), signal.SIGKILL)
+    os.kill(_writer_pid(log), signal.SIGKILL)
     with pytest.raises(LogError, match="has died"):
         log.close()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_writer_that_stalls_holds_nobody_up(path: Path) -> None:
+    """What it was sent it still writes once it goes on."""
+    log = LogProcess(path, {}, patience_s=0.0)
+    recorder = Recorder(log)
+    writer = _writer_pid(log)
+    os.kill(writer, signal.SIGSTOP)
+    rescue = threading.Timer(20.0, os.kill, (writer, signal.SIGCONT))
+    rescue.start()
+    with pytest.raises(LogError, match="does not keep up"):
+        _record_samples(recorder, 100_000)
+    assert rescue.is_alive(), "the sender waited"
+    rescue.cancel()
+    recorder.close()
+    os.kill(writer, signal.SIGCONT)
+    log._let_go()
+    held = read_log(path)
+    assert held.complete
+    sequences = held.raw_force.sequences.tolist()
+    assert sequences == list(range(len(sequences)))
+    assert len(sequences) > 400
+
+
+def test_a_writer_that_stalls_for_good_is_left_behind(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    log = LogProcess(path, {})
+    writer = _writer_pid(log)
+    os.kill(writer, signal.SIGSTOP)
+    log.write("/force/raw", b"", 0, 0)
+    monkeypatch.setattr("hil.log_process.PATIENCE_S", 0.1)
+    with pytest.raises(LogError, match="does not answer"):
+        log.close()
+    assert not log._process.is_alive()
+    assert read_log(path).raw_force.sequences.size == 0
+
+
+INTERRUPTED_START = """
+    import atexit, os, signal, sys
+    from pathlib import Path
+    from hil import log_process
+
+    register = atexit.register
+    def register_under_a_signal(*arguments):
+        os.kill(os.getpid(), signal.SIGINT)
+        return register(*arguments)
+    log_process.atexit.register = register_under_a_signal
+    log_process.LogProcess(Path(sys.argv[1]), {})
+"""
+
+
+def test_a_signal_while_the_writer_starts_ends_both(path: Path) -> None:
+    command = [sys.executable, "-c", textwrap.dedent(INTERRUPTED_START), str(path)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True)
+    try:
+        _, err = process.communicate(timeout=60.0)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    assert b"KeyboardInterrupt" in err
+    assert read_log(path).complete
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGTSTP])
 def test_signals_to_the_whole_terminal_do_not_end_the_writer(
     path: Path, number: signal.Signals
 ) -> None:
-    recorder = Recorder(LogProcess(path, {}))
-    os.kill(_writer_pid(), number)
+    log = LogProcess(path, {})
+    recorder = Recorder(log)
+    os.kill(_writer_pid(log), number)
     _record_samples(recorder, 100)
     recorder.close()
     assert read_log(path).raw_force.sequences.tolist() == list(range(100))

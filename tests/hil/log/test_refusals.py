@@ -108,7 +108,9 @@ def _fill_disk(kind: LogKind, path: Path, limit: int, milliseconds: int) -> list
 def test_a_full_disk_is_an_error_and_keeps_what_was_recorded(kind: LogKind, path: Path) -> None:
     errors = _fill_disk(kind, path, limit=30_000, milliseconds=500)
     text = f"cannot write the log {path}: File too large; what it held until then can be read"
-    assert errors == [text, text]
+    assert set(errors) == {text}
+    # a writer that lags says so once, when the log is closed
+    assert len(errors) == 2 or (kind is LogProcess and len(errors) == 1)
 
     recorder = Recorder(LogFile(path.with_name("whole.mcap"), scenario.METADATA))
     for call in scenario.calls(seed=4, milliseconds=500):

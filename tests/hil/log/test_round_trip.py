@@ -41,7 +41,7 @@ from hil.log_reader import Log, read_log
 from hil.recorder import Recorder
 from hil.ros_messages import ContactTruth, quaternion
 
-in_files = settings(deadline=None, max_examples=50)
+in_files = settings(max_examples=50)
 """How long a file takes to write and read is the machine's matter."""
 
 stamps = st.integers(0, 2**31 * 10**9 - 1)

@@ -10,7 +10,7 @@ from hil.log_reader import read_log
 from hil.summary import Outcome, summarise
 from hil.summary.values import wilson_interval
 from hil.summary.words import early_end, tally
-from tests.hil.report.runs import MS, RunWriter
+from tests.hil.report.runs import MS, PART, RunWriter
 
 OVERLOAD = Reason(Rule.FORCE, Severity.STOP, "f_x = 70.3 mN, limit 70.0 mN")
 
@@ -51,6 +51,13 @@ def test_a_whole_run(write_run: Callable[..., RunWriter]) -> None:
     assert summary.success_interval == pytest.approx((0.3424, 1.0), abs=5e-5)
     assert tally(summary) == "2 of 2 inserted (100.0 %; 95 % interval 34.2 to 100.0 %)"
     assert early_end(summary) == ()
+
+
+@pytest.mark.parametrize("name", ["on", "0123", "1_000", "1:30", "2026-01-02"])
+def test_a_part_is_read_as_the_run_read_it(name: str, write_run: Callable[..., RunWriter]) -> None:
+    facts = summarise(write_run(part=PART.replace("two_walls", name)).close()).facts
+    assert facts.part == name
+    assert len(facts.walls_m) == 2
 
 
 def test_the_facts_are_those_of_the_metadata(write_run: Callable[..., RunWriter]) -> None:

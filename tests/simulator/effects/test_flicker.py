@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import welch
 
@@ -23,7 +23,6 @@ def sampled_spectrum(ladder: Ladder, frequency: FloatArray, rate_Hz: float) -> F
     return ladder.rms[0] ** 2 * rungs.sum(axis=0)
 
 
-@settings(deadline=None)
 @given(st.floats(1e-4, 1.0), st.floats(1.001, 1e5), st.floats(20.0, 1e4))
 def test_the_ladder_is_as_close_to_the_law_as_stated(
     low: float, span: float, oversampling: float

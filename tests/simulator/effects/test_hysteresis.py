@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.checks import FloatArray
@@ -105,7 +105,6 @@ def test_the_output_is_off_by_at_most_the_weighted_half_gaps(path: list[float]) 
     assert (np.abs(outputs(MODEL, path) - path) <= bound * (1 + 1e-12)).all()
 
 
-@settings(deadline=None)
 @given(paths, paths, places, places)
 def test_minor_loops_between_the_same_ends_are_congruent(
     one: list[float], other: list[float], low: float, high: float
