@@ -12,6 +12,8 @@ from simulator.engine.table import Table
 
 _LEAST_PER_THREAD = 128 * BLOCK
 """Poses for which a second thread saves more than it takes to start."""
+CHUNK = 64 * BLOCK
+"""Poses that a thread takes at a time: a core that others use as well takes fewer of them."""
 
 
 def solve(
@@ -41,18 +43,17 @@ def solve(
     found = batch.arrays()
     if threads < 1:
         raise ValueError(f"threads is {threads}; it must be at least 1")
-    blocks = -(-n // BLOCK)
-    shares = max(1, min(threads, n // _LEAST_PER_THREAD))
-    bounds = [min(n, BLOCK * (blocks * share // shares)) for share in range(shares + 1)]
 
-    def run(first: int, last: int) -> None:
+    def run(first: int) -> None:
         memory = np.empty(1, LANES), np.empty(1, PAIRS), np.empty((table.columns.shape[1], BLOCK))
-        solve_blocks(table, given, found, first, last, *memory)
+        solve_blocks(table, given, found, first, min(n, first + CHUNK), *memory)
 
-    if shares == 1:
-        run(0, n)
+    chunks, workers = range(0, n, CHUNK), min(threads, n // _LEAST_PER_THREAD)
+    if workers < 2:
+        for first in chunks:
+            run(first)
     else:
-        with ThreadPoolExecutor(shares) as pool:
-            for _ in pool.map(run, bounds[:-1], bounds[1:]):
+        with ThreadPoolExecutor(workers) as pool:
+            for _ in pool.map(run, chunks):
                 pass
     return batch
