@@ -76,7 +76,7 @@ class Gate:
         verdict, self._memory = watch(self.limits, self._hold_pose, self._memory, snapshot, running)
         self._watched = snapshot, verdict
         severity = verdict.severity
-        leaving = severity is Severity.RETREAT and running is not None and running.leads_out
+        leaving = verdict.lets_out and running is not None and running.leads_out
         if severity >= Severity.HOLD and not leaving:
             self._halt_what_moves(snapshot)
         elif running is not None and severity is Severity.REDUCE:

@@ -70,9 +70,10 @@ class InsertionSkill:
         severity = verdict.severity
         if severity is Severity.STOP:
             self._enter(SkillPhase.FAILED, _hardest(verdict.reasons))
-        elif severity is Severity.RETREAT:
+            return
+        if severity is Severity.RETREAT:
             self._give_up(_hardest(verdict.reasons))
-        elif severity is Severity.HOLD and not was_sent:
+        if severity >= Severity.HOLD and not was_sent:
             since_ns = self._held_since_ns
             if since_ns is None:
                 self._held_since_ns = verdict.stamp_ns

@@ -147,6 +147,13 @@ class Verdict(NamedTuple):
             severity = max(severity, reason.severity)
         return severity
 
+    @property
+    def lets_out(self) -> bool:
+        """Whether it asks for a way out of the part, with nothing beside it that holds."""
+        return self.severity is Severity.RETREAT and all(
+            reason.severity is not Severity.HOLD for reason in self.reasons
+        )
+
 
 class Snapshot(NamedTuple):
     """All that the supervisor looks at, at one instant; None where nothing has been heard yet."""

@@ -126,7 +126,7 @@ def judge(
         *_refused_by_time(limits, snapshot, proposal, now_ns),
         *_refused_by_state(limits, hold_pose, standing, snapshot, step),
     ]
-    allowed = standing.severity < Severity.HOLD or standing.severity is Severity.RETREAT
+    allowed = standing.severity < Severity.HOLD or standing.lets_out
     if refusals or not allowed or snapshot.stage is None:
         reasons = (*standing.reasons, *refusals)
         return Verdict(now_ns, reasons, standing.speed_cap_m_s), None

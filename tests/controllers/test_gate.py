@@ -305,6 +305,20 @@ def test_a_retreat_lets_the_way_out_run_and_halts_everything_else() -> None:
         assert bench.stage.halts > 0
 
 
+def test_a_hold_beside_a_retreat_halts_the_way_out() -> None:
+    """Old force samples: even the way out would be blind."""
+    bench = Bench()
+    now = overload(bench, NOW, 140)
+    out = proposal((0.0, 0.0, -60e-6), stamp_ns=now)
+    seen = bench.see(now, (0.060, 0.0, 0.0))
+    assert bench.gate.send_step(out, seen, now).target is not None
+    bench.stage.now = stage(moving=True)
+    old = seen._replace(now_ns=now + 6 * MS, stage=stage(stamp_ns=now + 6 * MS, moving=True))
+    verdict = bench.gate.watch(old)
+    assert {r.severity for r in verdict.reasons} == {Severity.HOLD, Severity.RETREAT}
+    assert bench.stage.halts == 1
+
+
 def test_the_arm_moves_only_in_calm_and_clear() -> None:
     bench = Bench()
     bench.stage.now = OUT_AND_CALM

@@ -150,6 +150,16 @@ def test_a_hold_is_waited_for_but_not_for_ever() -> None:
     assert skill.phase is SkillPhase.FAILED
 
 
+def test_a_way_out_that_is_refused_is_not_tried_for_ever() -> None:
+    skill = inserting()
+    skill.heed(verdict(Severity.RETREAT, 0.0), was_sent=False)
+    skill.heed(verdict(Severity.RETREAT, 500.0), was_sent=False)
+    assert (skill.phase, skill.reason) == (SkillPhase.RETRACT, "force limit: too much")
+    skill.heed(verdict(Severity.RETREAT, 500.1), was_sent=False)
+    assert skill.phase is SkillPhase.FAILED
+    assert skill.reason == "held too long: force limit: too much"
+
+
 @pytest.mark.parametrize(
     ("gain_factor", "force_mN", "step_um"),
     [

@@ -221,6 +221,14 @@ def test_in_retreat_only_steps_out_are_sent(translation: Vector3, sent: bool) ->
     assert (Rule.RETREATING in rules(verdict)) is not sent
 
 
+def test_in_retreat_nothing_is_sent_while_something_holds_as_well() -> None:
+    both = (*standing(Severity.RETREAT).reasons, *standing(Severity.HOLD).reasons)
+    for reasons in (both, both[::-1]):
+        verdict, step = judged(proposal((0.0, 0.0, -60e-6)), Verdict(NOW, reasons))
+        assert step is None
+        assert verdict.severity is Severity.RETREAT
+
+
 @pytest.mark.parametrize(("dz_um", "sent"), [(-3.48, False), (-3.50, True)])
 def test_a_turn_on_the_way_out_counts_with_its_lever(dz_um: float, sent: bool) -> None:
     """0.05 deg on 4 mm are 3.49 um sideways; a larger turn is cut to that."""
