@@ -1,9 +1,9 @@
 """The kernel of the CPU: blocks of poses, one contact candidate after the other.
 
-A block's lanes are poses in their heading frames. For every circle the lanes near it are packed, so
-that only they are solved, in vectors; of these, a few are searched one by one. Each lane adds its
-contacts in the same order and in the same arithmetic wherever it stands and whatever its neighbours
-are: results do not depend on the batch.
+A block's lanes are poses in their heading frames. Lanes and circles near each other are listed, so
+that only these pairs are solved, in vectors; of these, a few are searched one by one. Each lane
+adds its contacts in the same order and in the same arithmetic wherever it stands and whatever its
+neighbours are: results do not depend on the batch.
 """
 
 import numpy as np
@@ -14,8 +14,8 @@ from simulator.engine.batch import Found, Given
 from simulator.engine.blocking import find_ends, stand_on_walls
 from simulator.engine.circle import edge_circle, rim_circle
 from simulator.engine.exchange import give, take_geometries, take_poses
-from simulator.engine.lanes import BLOCK, VECTOR
-from simulator.engine.loads import Vector, Wrench, contact_load
+from simulator.engine.lanes import BLOCK, LIST, VECTOR
+from simulator.engine.loads import Wrench, contact_load
 from simulator.engine.plain import edge_contact, edge_is_near, rim_contact, rim_is_near
 from simulator.engine.search import searched_contact
 from simulator.engine.table import EDGE_COLUMNS, RIM_COLUMNS, SHAFT_COLUMNS, WALL_COLUMNS, Table
@@ -49,165 +49,162 @@ def _leave_out_blocked(lane: Record, wall: int, used: int) -> None:
 
 
 @scalar
-def _pack(lane: Record, pair: Record, used: int) -> tuple[int, int]:
-    """Pack the lanes that are near: how many there are, and how many with the filling."""
-    count = 0
+def _list(lane: Record, pair: Record, held: int, wall: int, lower: int, used: int) -> int:
+    """Append the lanes that are near to the list of pairs; return its length."""
+    end = held
     for j in range(used):
-        pair.lane[count] = j
-        count += lane.near[j]
-    filled = (count + VECTOR - 1) // VECTOR * VECTOR
-    for j in range(count, filled):
-        pair.lane[j] = pair.lane[0]
-    for j in range(filled):
-        i = pair.lane[j]
-        pair.sin[j], pair.cos[j] = lane.sin[i], lane.cos[i]
-        pair.x[j], pair.y[j], pair.z[j] = lane.x[i], lane.y[i], lane.z[i]
-        pair.slide_x[j], pair.slide_y[j] = lane.slide_x[i], lane.slide_y[i]
-        pair.slide_z[j] = lane.slide_z[i]
-        pair.friction[j] = lane.friction[i]
-    return count, filled
-
-
-@inlined
-def _put(pair: Record, j: int, wrench: Wrench, penetration: float) -> None:
-    pair.force_x[j], pair.force_y[j], pair.force_z[j] = wrench[0], wrench[1], wrench[2]
-    pair.torque_x[j], pair.torque_y[j], pair.torque_z[j] = wrench[3], wrench[4], wrench[5]
-    pair.penetration[j] = penetration
-
-
-@inlined
-def _load(pair: Record, j: int, point: Vector, normal: Vector, penetration: float) -> None:
-    sliding = pair.slide_x[j], pair.slide_y[j], pair.slide_z[j]
-    _put(pair, j, contact_load(point, normal, penetration, sliding, pair.friction[j]), penetration)
+        pair.lane[end] = j
+        end += lane.near[j]
+    for k in range(held, held + (end - held + VECTOR - 1) // VECTOR * VECTOR):
+        pair.wall[k], pair.lower[k] = wall, lower
+    return end
 
 
 @scalar
-def _solve_rim(
-    lane: Record,
-    pair: Record,
-    near: int,
-    filled: int,
-    columns: FloatArray,
-    rim: int,
-    table: Table,
-    alike: bool,
+def _fill_shaft(pair: Record, start: int, end: int, columns: FloatArray, alike: bool) -> None:
+    """Fill in the numbers of the shafts for pairs `start` to `end` - 1."""
+    for k in range(start, end):
+        j = 0 if alike else pair.lane[k]
+        pair.shaft[k], pair.length[k] = columns[0, j], columns[1, j]
+        pair.first[k], pair.per_first[k] = columns[2, j], columns[3, j]
+        pair.last[k], pair.per_last[k] = columns[4, j], columns[5, j]
+
+
+@scalar
+def _fill_rim(
+    pair: Record, start: int, end: int, columns: FloatArray, rim: int, alike: bool
 ) -> None:
+    """The same for a rim."""
     if alike:
-        for j in range(filled):
-            pair.a[j] = columns[0, 0]
-            pair.b[j] = columns[1, 0]
-            pair.c[j] = columns[2, 0]
-            pair.d[j] = columns[3, 0]
-            pair.e[j] = columns[4, 0]
-            pair.f[j] = columns[5, 0]
-            pair.g[j] = columns[rim, 0]
-            pair.h[j] = columns[rim + 1, 0]
+        for k in range(start, start + (end - start + VECTOR - 1) // VECTOR * VECTOR):
+            pair.a[k], pair.b[k] = columns[rim, 0], columns[rim + 1, 0]
     else:
-        for j in range(filled):
-            i = pair.lane[j]
-            pair.a[j] = columns[0, i]
-            pair.b[j] = columns[1, i]
-            pair.c[j] = columns[2, i]
-            pair.d[j] = columns[3, i]
-            pair.e[j] = columns[4, i]
-            pair.f[j] = columns[5, i]
-            pair.g[j] = columns[rim, i]
-            pair.h[j] = columns[rim + 1, i]
-    for j in range(filled):
+        for k in range(start, end):
+            j = pair.lane[k]
+            pair.a[k], pair.b[k] = columns[rim, j], columns[rim + 1, j]
+
+
+@scalar
+def _fill_edge(
+    pair: Record, start: int, end: int, columns: FloatArray, edge: int, wall: int, alike: bool
+) -> None:
+    """The same for an edge and a wall."""
+    if alike:
+        for k in range(start, start + (end - start + VECTOR - 1) // VECTOR * VECTOR):
+            pair.a[k], pair.b[k] = columns[edge, 0], columns[edge + 1, 0]
+            pair.c[k], pair.d[k] = columns[edge + 2, 0], columns[wall, 0]
+            pair.e[k], pair.f[k] = columns[wall + 1, 0], columns[wall + 2, 0]
+            pair.g[k], pair.h[k] = columns[wall + 3, 0], columns[wall + 4, 0]
+    else:
+        for k in range(start, end):
+            j = pair.lane[k]
+            pair.a[k], pair.b[k] = columns[edge, j], columns[edge + 1, j]
+            pair.c[k], pair.d[k] = columns[edge + 2, j], columns[wall, j]
+            pair.e[k], pair.f[k] = columns[wall + 1, j], columns[wall + 2, j]
+            pair.g[k], pair.h[k] = columns[wall + 3, j], columns[wall + 4, j]
+
+
+@inlined
+def _put(pair: Record, k: int, wrench: Wrench, penetration: float) -> None:
+    pair.force_x[k], pair.force_y[k], pair.force_z[k] = wrench[0], wrench[1], wrench[2]
+    pair.torque_x[k], pair.torque_y[k], pair.torque_z[k] = wrench[3], wrench[4], wrench[5]
+    pair.penetration[k] = penetration
+
+
+@scalar
+def _gather(lane: Record, pair: Record, held: int) -> None:
+    """Copy the poses of the lanes to their pairs."""
+    for k in range(held):
+        j = pair.lane[k]
+        pair.sin[k], pair.cos[k] = lane.sin[j], lane.cos[j]
+        pair.x[k], pair.y[k], pair.z[k] = lane.x[j], lane.y[j], lane.z[j]
+        pair.slide_x[k], pair.slide_y[k] = lane.slide_x[j], lane.slide_y[j]
+        pair.slide_z[k], pair.friction[k] = lane.slide_z[j], lane.friction[j]
+
+
+@scalar
+def _load(pair: Record, held: int) -> None:
+    """Loads of the contacts found: a loop of its own, as short chains of operations overlap."""
+    for k in range((held + VECTOR - 1) // VECTOR * VECTOR):
+        point = pair.point_x[k], pair.point_y[k], pair.point_z[k]
+        normal = pair.normal_x[k], pair.normal_y[k], pair.normal_z[k]
+        sliding = pair.slide_x[k], pair.slide_y[k], pair.slide_z[k]
+        penetration = pair.penetration[k]
+        load = contact_load(point, normal, penetration, sliding, pair.friction[k])
+        _put(pair, k, load, penetration)
+
+
+@scalar
+def _solve_rims(lane: Record, pair: Record, held: int, columns: FloatArray, table: Table) -> None:
+    _gather(lane, pair, held)
+    for k in range((held + VECTOR - 1) // VECTOR * VECTOR):
         point, normal, penetration, search = rim_contact(
-            pair.sin[j], pair.cos[j], pair.x[j], pair.y[j], pair.z[j],
-            pair.a[j], pair.b[j], pair.c[j], pair.d[j], pair.e[j], pair.f[j],
-            pair.g[j], pair.h[j],
+            pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k],
+            pair.shaft[k], pair.length[k],
+            pair.first[k], pair.per_first[k], pair.last[k], pair.per_last[k],
+            pair.a[k], pair.b[k],
         )  # fmt: skip
-        _load(pair, j, point, normal, penetration)
-        pair.search[j] = search
-    for j in range(near):
-        if pair.search[j]:
-            i = pair.lane[j]
+        pair.point_x[k], pair.point_y[k], pair.point_z[k] = point
+        pair.normal_x[k], pair.normal_y[k], pair.normal_z[k] = normal
+        pair.penetration[k] = penetration
+        pair.search[k] = search
+    _load(pair, held)
+    for k in range(held):
+        if pair.search[k]:
+            j = pair.lane[k]
             circle = rim_circle(
-                pair.sin[j], pair.cos[j], pair.x[j], pair.y[j], pair.z[j],
-                pair.a[j], pair.b[j], columns[6, i], pair.g[j], pair.h[j],
+                pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k],
+                pair.shaft[k], pair.length[k], columns[6, j], pair.a[k], pair.b[k],
             )  # fmt: skip
-            faces = table.shaft_faces[lane.geometry[i]]
-            wrench, penetration = searched_contact(
-                circle, faces, (pair.slide_x[j], pair.slide_y[j], pair.slide_z[j]), pair.friction[j]
-            )
-            _put(pair, j, wrench, penetration)
+            faces = table.shaft_faces[lane.geometry[j]]
+            sliding = pair.slide_x[k], pair.slide_y[k], pair.slide_z[k]
+            wrench, penetration = searched_contact(circle, faces, sliding, pair.friction[k])
+            _put(pair, k, wrench, penetration)
 
 
 @scalar
-def _solve_edge(
-    lane: Record,
-    pair: Record,
-    near: int,
-    filled: int,
-    columns: FloatArray,
-    edge: int,
-    wall: int,
-    number: int,
-    trailing: int,
-    table: Table,
-    alike: bool,
-) -> None:
-    if alike:
-        for j in range(filled):
-            pair.a[j] = columns[edge, 0]
-            pair.b[j] = columns[edge + 1, 0]
-            pair.c[j] = columns[edge + 2, 0]
-            pair.d[j] = columns[wall, 0]
-            pair.e[j] = columns[wall + 1, 0]
-            pair.f[j] = columns[wall + 2, 0]
-            pair.g[j] = columns[wall + 3, 0]
-            pair.h[j] = columns[wall + 4, 0]
-    else:
-        for j in range(filled):
-            i = pair.lane[j]
-            pair.a[j] = columns[edge, i]
-            pair.b[j] = columns[edge + 1, i]
-            pair.c[j] = columns[edge + 2, i]
-            pair.d[j] = columns[wall, i]
-            pair.e[j] = columns[wall + 1, i]
-            pair.f[j] = columns[wall + 2, i]
-            pair.g[j] = columns[wall + 3, i]
-            pair.h[j] = columns[wall + 4, i]
-    for j in range(filled):
+def _solve_edges(lane: Record, pair: Record, held: int, table: Table) -> None:
+    _gather(lane, pair, held)
+    for k in range((held + VECTOR - 1) // VECTOR * VECTOR):
         point, normal, penetration, search = edge_contact(
-            pair.sin[j], pair.cos[j], pair.x[j], pair.y[j], pair.z[j],
-            pair.a[j], pair.b[j], pair.c[j], trailing,
-            pair.d[j], pair.e[j], pair.f[j], pair.g[j], pair.h[j],
+            pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k],
+            pair.a[k], pair.b[k], pair.c[k], pair.lower[k] == _NONE,
+            pair.d[k], pair.e[k], pair.f[k], pair.g[k], pair.h[k],
         )  # fmt: skip
-        _load(pair, j, point, normal, penetration)
-        pair.search[j] = search
-    for j in range(near):
-        if pair.search[j]:
+        pair.point_x[k], pair.point_y[k], pair.point_z[k] = point
+        pair.normal_x[k], pair.normal_y[k], pair.normal_z[k] = normal
+        pair.penetration[k] = penetration
+        pair.search[k] = search
+    _load(pair, held)
+    for k in range(held):
+        if pair.search[k]:
+            j = pair.lane[k]
             circle = edge_circle(
-                pair.sin[j], pair.cos[j], pair.x[j], pair.y[j], pair.z[j],
-                pair.a[j], pair.b[j], pair.c[j], trailing, pair.d[j], pair.e[j],
+                pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k],
+                pair.a[k], pair.b[k], pair.c[k], pair.lower[k] == _NONE, pair.d[k], pair.e[k],
             )  # fmt: skip
-            faces = table.wall_faces[lane.geometry[pair.lane[j]], number]
-            wrench, penetration = searched_contact(
-                circle, faces, (pair.slide_x[j], pair.slide_y[j], pair.slide_z[j]), pair.friction[j]
-            )
-            _put(pair, j, wrench, penetration)
+            faces = table.wall_faces[lane.geometry[j], pair.wall[k]]
+            sliding = pair.slide_x[k], pair.slide_y[k], pair.slide_z[k]
+            wrench, penetration = searched_contact(circle, faces, sliding, pair.friction[k])
+            _put(pair, k, wrench, penetration)
 
 
 @scalar
-def _add(lane: Record, pair: Record, near: int, wall: int, is_lower: bool) -> None:
-    """Add contacts to their lanes, and note the stations of wall number `wall` that touch."""
-    bit = _ONE << np.uint64(wall)
-    upper, lower = _NONE if is_lower else bit, bit if is_lower else _NONE
-    for j in range(near):
-        i = pair.lane[j]
-        lane.force_x[i] += pair.force_x[j]
-        lane.force_y[i] += pair.force_y[j]
-        lane.force_z[i] += pair.force_z[j]
-        lane.torque_x[i] += pair.torque_x[j]
-        lane.torque_y[i] += pair.torque_y[j]
-        lane.torque_z[i] += pair.torque_z[j]
-        before, now = lane.penetration[i], pair.penetration[j]
-        lane.penetration[i] = now if now > before else before
-        lane.upper[i] |= upper if now > 0.0 else _NONE
-        lane.lower[i] |= lower if now > 0.0 else _NONE
+def _add(lane: Record, pair: Record, held: int) -> None:
+    """Add contacts to their lanes, and note the stations that touch."""
+    for k in range(held):
+        j = pair.lane[k]
+        lane.force_x[j] += pair.force_x[k]
+        lane.force_y[j] += pair.force_y[k]
+        lane.force_z[j] += pair.force_z[k]
+        lane.torque_x[j] += pair.torque_x[k]
+        lane.torque_y[j] += pair.torque_y[k]
+        lane.torque_z[j] += pair.torque_z[k]
+        before, now = lane.penetration[j], pair.penetration[k]
+        lane.penetration[j] = now if now > before else before
+        touches, lower = np.uint64(now > 0.0), pair.lower[k]
+        lane.upper[j] |= (touches & (lower ^ _ONE)) << pair.wall[k]
+        lane.lower[j] |= (touches & lower) << pair.wall[k]
 
 
 @kernel
@@ -228,6 +225,7 @@ def solve_blocks(
     alike = len(given.geometry) == 1
     if alike:
         take_geometries(lane, columns, given, table, 0, 1, BLOCK)
+        _fill_shaft(pair, 0, LIST, columns, alike)
     for start in range(first, last, BLOCK):
         count = min(BLOCK, last - start)
         used = (count + VECTOR - 1) // VECTOR * VECTOR
@@ -239,36 +237,33 @@ def solve_blocks(
             for wall in range(walls):
                 mouth = SHAFT_COLUMNS + RIM_COLUMNS * table.mouths[wall]
                 stand_on_walls(lane, columns, mouth, wall, given.entered, start, count)
+        held = 0
         for rim in range(rims):
             row, wall = SHAFT_COLUMNS + RIM_COLUMNS * rim, table.rim_walls[rim]
             _screen_rim(lane, columns, row, used)
             if blocking:
                 _leave_out_blocked(lane, wall, used)
-            near, filled = _pack(lane, pair, used)
-            if near:
-                _solve_rim(lane, pair, near, filled, columns, row, table, alike)
-                _add(lane, pair, near, wall, table.rim_stations[rim] == 1)
+            end = _list(lane, pair, held, wall, table.rim_stations[rim], used)
+            _fill_rim(pair, held, end, columns, row, alike)
+            if not alike:
+                _fill_shaft(pair, held, end, columns, alike)
+            held = end
+            if held > LIST - BLOCK or rim == rims - 1:
+                _solve_rims(lane, pair, held, columns, table)
+                _add(lane, pair, held)
+                held = 0
         for edge in range(edges):
-            row, trailing = first_edge + EDGE_COLUMNS * edge, table.edge_trailing[edge]
+            row, lower = first_edge + EDGE_COLUMNS * edge, 1 - table.edge_trailing[edge]
             for wall in range(walls):
                 wall_row = first_wall + WALL_COLUMNS * wall
                 _screen_edge(lane, columns, row, wall_row, used)
                 if blocking:
                     _leave_out_blocked(lane, wall, used)
-                near, filled = _pack(lane, pair, used)
-                if near:
-                    _solve_edge(
-                        lane,
-                        pair,
-                        near,
-                        filled,
-                        columns,
-                        row,
-                        wall_row,
-                        wall,
-                        trailing,
-                        table,
-                        alike,
-                    )
-                    _add(lane, pair, near, wall, trailing == 0)
+                end = _list(lane, pair, held, wall, lower, used)
+                _fill_edge(pair, held, end, columns, row, wall_row, alike)
+                held = end
+                if held > LIST - BLOCK or (wall == walls - 1 and edge == edges - 1):
+                    _solve_edges(lane, pair, held, table)
+                    _add(lane, pair, held)
+                    held = 0
         give(lane, columns, first_wall, walls, found, start, count, used)

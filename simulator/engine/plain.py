@@ -27,7 +27,8 @@ def rim_is_near(
     m = along * cos
     lift = radius * sin
     excess = along * along + y * y + (radius - shaft) * (radius + shaft) - lift * lift
-    touches = excess < 2.0 * radius * math.sqrt(m * m + y * y)
+    square = 4.0 * radius * radius * (m * m + y * y)
+    touches = (excess < 0.0) | (excess * excess < square)
     entered = sin * x - cos * height
     return touches & (entered + lift > 0.0) & (entered - lift < length)
 
@@ -42,9 +43,12 @@ def edge_is_near(
     z -= behind * cos
     m = x * cos
     lift = radius * sin
-    farthest = math.sqrt(x * x + y * y + radius * radius + 2.0 * radius * math.sqrt(m * m + y * y))
-    overlap = farthest + tube - bore
-    return (overlap > 0.0) & (z + lift + overlap > entry) & (z - lift - overlap < exit_)
+    wall = bore - tube
+    excess = x * x + y * y + (radius - wall) * (radius + wall)
+    square = 4.0 * radius * radius * (m * m + y * y)
+    touches = (excess > 0.0) | (excess * excess < square) | (wall < 0.0)
+    beyond = lift + abs(x) + abs(y) + radius - wall
+    return touches & (z + beyond > entry) & (z - beyond < exit_)
 
 
 @inlined

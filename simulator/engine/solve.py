@@ -2,12 +2,11 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
 import numpy.typing as npt
 
 from simulator.engine.batch import Batch, BoolArray, checked, checked_out
 from simulator.engine.block import solve_blocks
-from simulator.engine.lanes import BLOCK, LANES, PAIRS
+from simulator.engine.lanes import BLOCK, working_memory
 from simulator.engine.table import Table
 
 _LEAST_PER_THREAD = 128 * BLOCK
@@ -45,7 +44,7 @@ def solve(
         raise ValueError(f"threads is {threads}; it must be at least 1")
 
     def run(first: int) -> None:
-        memory = np.empty(1, LANES), np.empty(1, PAIRS), np.empty((table.columns.shape[1], BLOCK))
+        memory = working_memory(table.columns.shape[1])
         solve_blocks(table, given, found, first, min(n, first + CHUNK), *memory)
 
     chunks, workers = range(0, n, CHUNK), min(threads, n // _LEAST_PER_THREAD)
