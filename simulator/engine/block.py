@@ -16,7 +16,13 @@ from simulator.engine.circle import edge_circle, rim_circle
 from simulator.engine.exchange import give, take_geometries, take_poses
 from simulator.engine.lanes import BLOCK, LIST, VECTOR
 from simulator.engine.loads import Wrench, contact_load
-from simulator.engine.plain import edge_contact, edge_is_near, rim_contact, rim_is_near
+from simulator.engine.plain import (
+    edge_contact,
+    edge_is_near,
+    rim_contact,
+    rim_direction,
+    rim_is_near,
+)
 from simulator.engine.search import searched_contact
 from simulator.engine.table import EDGE_COLUMNS, RIM_COLUMNS, SHAFT_COLUMNS, WALL_COLUMNS, Table
 
@@ -136,9 +142,15 @@ def _load(pair: Record, held: int) -> None:
 
 @scalar
 def _solve_rims(lane: Record, pair: Record, held: int, columns: FloatArray, table: Table) -> None:
+    # Two loops, as short chains of operations overlap.
     _gather(lane, pair, held)
     for k in range((held + VECTOR - 1) // VECTOR * VECTOR):
+        pair.e1[k], pair.e2[k], pair.ratio[k] = rim_direction(
+            pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k], pair.a[k], pair.b[k]
+        )
+    for k in range((held + VECTOR - 1) // VECTOR * VECTOR):
         point, normal, penetration, search = rim_contact(
+            (pair.e1[k], pair.e2[k], pair.ratio[k]),
             pair.sin[k], pair.cos[k], pair.x[k], pair.y[k], pair.z[k],
             pair.shaft[k], pair.length[k],
             pair.first[k], pair.per_first[k], pair.last[k], pair.per_last[k],

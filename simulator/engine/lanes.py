@@ -44,7 +44,7 @@ PAIRS = np.dtype(
     _fields("sin cos x y z slide_x slide_y slide_z friction", "f8", LIST)
     + _fields(
         "shaft length first per_first last per_last a b c d e f g h "
-        f"point_x point_y point_z normal_x normal_y normal_z penetration {WRENCH}",
+        f"e1 e2 ratio point_x point_y point_z normal_x normal_y normal_z penetration {WRENCH}",
         "f8",
         LIST,
     )

@@ -52,16 +52,28 @@ def edge_is_near(
 
 
 @inlined
+def rim_direction(
+    sin: float, cos: float, x: float, y: float, z: float, plane: float, radius: float
+) -> Vector:
+    """Direction of a rim's deepest point, and its ratio; see `near_direction`."""
+    along = -(cos * x + sin * (plane - z))
+    return near_direction(-along * cos, y, radius * sin * sin)
+
+
+@inlined
 def rim_contact(
-    sin: float, cos: float, x: float, y: float, z: float,
+    best: Vector, sin: float, cos: float, x: float, y: float, z: float,
     shaft: float, length: float, first: float, per_first: float, last: float, per_last: float,
     plane: float, radius: float,
 ) -> Contact:  # fmt: skip
-    """Contact of a rim with the cylinder; the numbers of the shaft are as in `Table.columns`."""
+    """Contact of a rim with the cylinder at the point in its best direction.
+
+    The numbers of the shaft are as in `Table.columns`.
+    """
     height = plane - z
     along = -(cos * x + sin * height)
     bulge = radius * sin * sin
-    e1, e2, ratio = near_direction(-along * cos, y, bulge)
+    e1, e2, ratio = best
     a, b = along + cos * radius * e1, radius * e2 - y
     distance = math.sqrt(a * a + b * b)
     overlap = shaft - distance

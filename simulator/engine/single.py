@@ -7,7 +7,13 @@ import numpy as np
 from simulator.compiled import inlined, scalar
 from simulator.engine.circle import edge_circle, rim_circle
 from simulator.engine.loads import Vector, Wrench, contact_load
-from simulator.engine.plain import edge_contact, edge_is_near, rim_contact, rim_is_near
+from simulator.engine.plain import (
+    edge_contact,
+    edge_is_near,
+    rim_contact,
+    rim_direction,
+    rim_is_near,
+)
 from simulator.engine.pose import heading, is_valid
 from simulator.engine.search import searched_contact
 from simulator.engine.states import INVALID, contact_state
@@ -32,8 +38,9 @@ def _rim(
     shaft, length, plane, radius = numbers[0], numbers[1], numbers[column], numbers[column + 1]
     if not rim_is_near(sin, cos, x, y, z, shaft, length, plane, radius):
         return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0
+    best = rim_direction(sin, cos, x, y, z, plane, radius)
     point, normal, penetration, search = rim_contact(
-        sin, cos, x, y, z, shaft, length,
+        best, sin, cos, x, y, z, shaft, length,
         numbers[2], numbers[3], numbers[4], numbers[5], plane, radius,
     )  # fmt: skip
     if search:
