@@ -11,7 +11,7 @@ from simulator.engine.table import Table
 
 _LEAST_PER_THREAD = 128 * BLOCK
 """Poses for which a second thread saves more than it takes to start."""
-CHUNK = 64 * BLOCK
+CHUNK = 256 * BLOCK
 """Poses that a thread takes at a time: a core that others use as well takes fewer of them."""
 
 
