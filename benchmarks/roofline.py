@@ -60,7 +60,10 @@ def _counting(operation: str, name: str) -> Callable[..., "Counting"]:
 
 
 class Counting(float):
-    """A number that counts what is done to it; comparisons, signs and absolute values are free."""
+    """A number that counts what is done to it; comparisons, signs and absolute values are free.
+
+    The ignored types: `float` declares operators of two arguments, ours take either kind of call.
+    """
 
     __add__ = _counting("add", "__add__")  # type: ignore[assignment]
     __radd__ = _counting("add", "__radd__")

@@ -46,10 +46,6 @@ class InsertionSkill:
         self.steps = 0
         """Steps sent in the insert phase."""
 
-    @property
-    def is_over(self) -> bool:
-        return self.phase in (SkillPhase.DONE, SkillPhase.FAILED)
-
     def next_step(self, observation: Observation) -> Vector3 | None:
         """Return the translation to propose [m], frame M; None once the insertion is over."""
         self._enter_next_phase(observation)

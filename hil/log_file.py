@@ -123,7 +123,7 @@ class LogFile:
             self._channels: dict[str, int] = {
                 topic: self._register(topic, schemas) for topic in Topic
             }
-            self._writer.flush()  # type: ignore[no-untyped-call]
+            self._writer.flush()  # type: ignore[no-untyped-call]  # see above LogFile
         except OSError as error:
             raise self._failed(error) from error
 
@@ -162,7 +162,7 @@ class LogFile:
         if self._unusable:
             raise LogError(self._unusable)
         try:
-            self._writer.flush()  # type: ignore[no-untyped-call]
+            self._writer.flush()  # type: ignore[no-untyped-call]  # see above LogFile
         except OSError as error:
             raise self._failed(error) from error
 
@@ -173,8 +173,8 @@ class LogFile:
         try:
             if ending:
                 self._writer.add_metadata(ENDING_RECORD, {"text": ending})
-            self._writer.finish()  # type: ignore[no-untyped-call]
-            self._writer.flush()  # type: ignore[no-untyped-call]
+            self._writer.finish()  # type: ignore[no-untyped-call]  # see above LogFile
+            self._writer.flush()  # type: ignore[no-untyped-call]  # see above LogFile
             self._stream.close()
         except OSError as error:
             raise self._failed(error) from error

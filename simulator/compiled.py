@@ -38,11 +38,11 @@ class _PackageCache(FunctionCache):
     """Keeps compiled code until any file of the kernel's folder changes, not only its own."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
+        super().__init__(function)  # type: ignore[no-untyped-call]  # in numba
         self._source = _source(Path(function.__code__.co_filename).parent)
 
     def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
-        key = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]
+        key = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]  # in numba
         return (*key, self._source)
 
 

@@ -39,7 +39,7 @@ class DualPegEnv(gymnasium.Env[Float32Array, Float32Array]):
     way of environment i of `DualPegVectorEnv` under the same seed.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012
+    metadata = {"render_modes": ["rgb_array"], "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012, gymnasium's type
 
     def __init__(
         self,

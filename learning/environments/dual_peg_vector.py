@@ -31,7 +31,7 @@ class DualPegVectorEnv(VectorEnv[Float32Array, Float32Array, npt.NDArray[Any]]):
     copied: they are read-only and never written again.
     """
 
-    metadata = {  # noqa: RUF012
+    metadata = {  # noqa: RUF012, gymnasium's type
         "render_modes": ["rgb_array"],
         "render_fps": FRAMES_PER_SECOND,
         "autoreset_mode": AutoresetMode.NEXT_STEP,

@@ -82,8 +82,8 @@ def picture(config: DualPegConfig, batch: Batch, row: int) -> npt.NDArray[np.uin
             _draw_view(axes, config, pose, contacts, axis)
         _draw_forces(views[2], config, batch.force_N[row])
         _write_heading(figure, config, batch, row, state)
-        canvas.draw()  # type: ignore[no-untyped-call]
-        return np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]
+        canvas.draw()  # type: ignore[no-untyped-call]  # in matplotlib
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()  # type: ignore[no-untyped-call]  # in matplotlib
 
 
 def _draw_view(

@@ -244,7 +244,7 @@ def test_a_command_without_an_answer_makes_older_states_count_as_moving() -> Non
     def fail(*_: object) -> None:
         raise DeviceError("no answer")
 
-    bench.stage.move_to = bench.arm.move_to = fail  # type: ignore[assignment, method-assign]
+    bench.stage.move_to = bench.arm.move_to = fail  # type: ignore[assignment, method-assign]  # a fault
     for send_one in (send_in, send_away):
         seen = bench.see()
         with pytest.raises(DeviceError):
@@ -376,7 +376,7 @@ def test_hold_halts_stage_and_arm_at_once_even_if_one_fails() -> None:
     def fail() -> None:
         raise OSError("no route")
 
-    bench.stage.halt = fail  # type: ignore[method-assign]
+    bench.stage.halt = fail  # type: ignore[method-assign]  # a fault
     with pytest.raises(OSError, match="no route"):
         bench.gate.hold()
     assert bench.arm.halts == 2

@@ -83,7 +83,7 @@ def test_the_last_step_ends_at_the_stroke_and_the_insertion_is_done() -> None:
     skill = inserting()
     assert skill.next_step(seen(3180.0)) == pytest.approx((1e-6, 2e-6, 20e-6))
     assert skill.next_step(seen(3200.0)) is None
-    assert (skill.phase, skill.reason, skill.is_over) == (SkillPhase.DONE, "", True)
+    assert (skill.phase, skill.reason) == (SkillPhase.DONE, "")
 
 
 @pytest.mark.parametrize(("force_mN", "blocked"), [(999.0, False), (1000.0, True)])

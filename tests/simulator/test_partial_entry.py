@@ -3,24 +3,23 @@
 Wherever a slanted end face cuts a rim's plane, the best point of a circle is not the deepest one.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
 from simulator.checks import FloatArray
 from simulator.circle import Circles
 from simulator.contact import solve
 from simulator.extremum import discretised_search
 from simulator.geometry import Hole, Part, Shaft, shaft_axis, tilt_of
+from tests.simulator.dense import Height, greatest
 
 PART = Part((Hole(1.01e-3, 5e-4), Hole(1.01e-3, 5e-4, 1.5e-3)))
 SHAFT = Shaft(1e-3, 4e-3)
 STILL = np.zeros(3)
 DOWN = np.array([0.0, 0.0, 1.0])
 GRID = np.linspace(0.0, 2.0 * np.pi, 20_001)
-Height = Callable[[FloatArray], FloatArray]
 
 
 def poses_cut_by(part: Part, shaft: Shaft, tilt: float, away: float, n: int) -> FloatArray:
@@ -67,22 +66,6 @@ def heights(part: Part, shaft: Shaft, pose: FloatArray) -> Iterator[Height]:
             yield lambda angle, wall=wall, back=back: edge(angle, *wall, back)
 
 
-def greatest(height: Height) -> float:
-    """Greatest value over all angles: a dense grid, then a search at its three best summits."""
-    values = height(GRID)
-    summits = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
-    best = float(values.max())
-    for summit in summits[np.argsort(-values[summits])[:3]]:
-        found = minimize_scalar(
-            lambda away, start=GRID[summit]: -float(height(start + np.array(away))),
-            bounds=(-GRID[1], GRID[1]),
-            method="bounded",
-            options={"xatol": 1e-12},
-        )
-        best = max(best, -float(found.fun))
-    return best
-
-
 @pytest.mark.parametrize(
     ("part", "shaft", "tilt", "away"),
     [
@@ -100,7 +83,7 @@ def test_penetration_is_the_greatest_on_the_circle(
     poses = poses_cut_by(part, shaft, tilt, away, 25)
     found, cut = solve(part, shaft, poses, STILL), 0
     for pose, penetration, overlap in zip(poses, found.penetration, found.overlap, strict=True):
-        expected = [max(0.0, greatest(height)) for height in heights(part, shaft, pose)]
+        expected = [max(0.0, greatest(height, len(GRID))) for height in heights(part, shaft, pose)]
         np.testing.assert_allclose(penetration, expected, rtol=0.0, atol=1e-12, err_msg=str(pose))
         cut += int(((penetration > 0.0) & (penetration < overlap - 1e-9)).sum())
     assert cut >= 10
@@ -123,7 +106,7 @@ def test_penetration_is_the_greatest_where_a_rim_overlaps_on_both_sides() -> Non
     two_sided = 0
     for pose, value in zip(poses[:100], exact[:100, 0], strict=True):
         height = next(heights(part, SHAFT, pose))
-        assert value == pytest.approx(max(0.0, greatest(height)), abs=1e-12), str(pose)
+        assert value == pytest.approx(max(0.0, greatest(height, len(GRID))), abs=1e-12), str(pose)
         values = height(GRID[:-1])
         peaks = (values > np.roll(values, 1)) & (values > np.roll(values, -1)) & (values > 0.0)
         two_sided += int(peaks.sum() > 1)

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
 from simulator.candidates import Kind, candidates
 from simulator.checks import FloatArray
@@ -17,11 +16,12 @@ from simulator.contact import ContactLaw, Contacts, solve
 from simulator.extremum import discretised_search
 from simulator.geometry import Hole, Part, Shaft, shaft_axis
 from simulator.profile import Chamfer, Rounding
+from tests.simulator.dense import greatest
 from tests.simulator.shapes import PARTS, SHAFTS, pressing_poses
 
 STILL, DOWN = np.zeros(3), np.array([0.0, 0.0, 1.0])
 SMOOTH = ContactLaw(friction=0.0)
-GRID = np.linspace(0.0, 2.0 * np.pi, 4001)
+GRID_POINTS = 4001
 Around = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
@@ -81,22 +81,6 @@ def circles(part: Part, shaft: Shaft, pose: FloatArray) -> Iterator[Around]:
             yield lambda angle, n=number, w=wall, k=kind: edge(angle, n, w, k == Kind.LEADING_EDGE)
 
 
-def greatest(height: Callable[[FloatArray], FloatArray]) -> float:
-    """Greatest value over all angles: a dense grid, then a search at its three best summits."""
-    values = height(GRID)
-    summits = np.flatnonzero((values >= np.roll(values, 1)) & (values >= np.roll(values, -1)))
-    best = float(values.max())
-    for summit in summits[np.argsort(-values[summits])[:3]]:
-        found = minimize_scalar(
-            lambda away, start=GRID[summit]: -float(height(start + np.array(away))),
-            bounds=(-GRID[1], GRID[1]),
-            method="bounded",
-            options={"xatol": 1e-12},
-        )
-        best = max(best, -float(found.fun))
-    return best
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("part", "tilt"), [("two chamfered", 5e-3), ("three", 0.05)])
 @pytest.mark.parametrize("shaft", SHAFTS)
@@ -108,11 +92,11 @@ def test_depth_and_penetration_are_the_greatest_on_the_circle(
     found, touching = solve(wall, solid, poses, STILL), 0
     for pose, penetration, overlap in zip(poses, found.penetration, found.overlap, strict=True):
         for c, around in enumerate(circles(wall, solid, pose)):
-            expected = greatest(lambda angle, around=around: around(angle)[1])
+            expected = greatest(lambda angle, around=around: around(angle)[1], GRID_POINTS)
             assert penetration[c] == pytest.approx(max(0.0, expected), abs=1e-12), (pose, c)
             if expected > 0.0:
                 touching += 1
-                deepest = greatest(lambda angle, around=around: around(angle)[0])
+                deepest = greatest(lambda angle, around=around: around(angle)[0], GRID_POINTS)
                 assert overlap[c] == pytest.approx(deepest, abs=1e-12), (pose, c)
     assert touching >= 2
 

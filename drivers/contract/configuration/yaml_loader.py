@@ -76,6 +76,7 @@ def parse_yaml(path: Path, text: str) -> dict[str, Plain]:
 class _Loader(yaml.SafeLoader):
     """Composes nodes with the few scalar types that a configuration needs."""
 
+    # PyYAML declares it an attribute of instances, which ClassVar would contradict.
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:

@@ -212,6 +212,6 @@ def test_one_hole_and_a_chain_of_three(load: Load) -> None:
 
 def test_frozen(config: CellConfig) -> None:
     with pytest.raises(ValidationError, match="frozen"):
-        config.limits.speed_m_s = 1.0  # type: ignore[misc]
+        config.limits.speed_m_s = 1.0  # type: ignore[misc]  # must fail: it is frozen
     with pytest.raises(AttributeError):
-        config.limits = config.limits  # type: ignore[misc]
+        config.limits = config.limits  # type: ignore[misc]  # must fail: it is frozen

@@ -48,7 +48,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Rows:
 def killed(tmp_path_factory: pytest.TempPathFactory) -> list[Killed]:
     """Logs of writers that were killed at random moments."""
     folder = tmp_path_factory.mktemp("killed")
-    rng = random.Random(SEED)  # noqa: S311
+    rng = random.Random(SEED)  # noqa: S311, no secret
     moments_s = [rng.uniform(0.0, LATEST_KILL_S) for _ in range(KILLS)]
     arguments = [str(folder), str(SEED), str(RUN_MS), *map(str, moments_s)]
     subprocess.run([sys.executable, "-m", "tests.hil.log.killed_writers", *arguments], check=True)

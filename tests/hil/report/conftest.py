@@ -18,6 +18,6 @@ def write_run(tmp_path: Path) -> Callable[..., RunWriter]:
         nonlocal count
         count += 1
         path = tmp_path / (name or f"run{count}.mcap")
-        return RunWriter(path, metadata(**about), bias_mN, busy_ns)  # type: ignore[arg-type]
+        return RunWriter(path, metadata(**about), bias_mN, busy_ns)  # type: ignore[arg-type]  # any of its arguments
 
     return begin
