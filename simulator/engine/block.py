@@ -15,7 +15,7 @@ from simulator.engine.blocking import find_ends, stand_on_walls
 from simulator.engine.circle import edge_circle, rim_circle
 from simulator.engine.exchange import give, take_geometries, take_poses
 from simulator.engine.lanes import BLOCK, LIST, VECTOR
-from simulator.engine.loads import Wrench, contact_load
+from simulator.engine.loads import Vector, Wrench, contact_load
 from simulator.engine.plain import (
     edge_contact,
     edge_is_near,
@@ -111,6 +111,16 @@ def _fill_edge(
 
 
 @inlined
+def _note(
+    pair: Record, k: int, point: Vector, normal: Vector, penetration: float, search: bool
+) -> None:
+    pair.point_x[k], pair.point_y[k], pair.point_z[k] = point
+    pair.normal_x[k], pair.normal_y[k], pair.normal_z[k] = normal
+    pair.penetration[k] = penetration
+    pair.search[k] = search
+
+
+@inlined
 def _put(pair: Record, k: int, wrench: Wrench, penetration: float) -> None:
     pair.force_x[k], pair.force_y[k], pair.force_z[k] = wrench[0], wrench[1], wrench[2]
     pair.torque_x[k], pair.torque_y[k], pair.torque_z[k] = wrench[3], wrench[4], wrench[5]
@@ -156,10 +166,7 @@ def _solve_rims(lane: Record, pair: Record, held: int, columns: FloatArray, tabl
             pair.first[k], pair.per_first[k], pair.last[k], pair.per_last[k],
             pair.a[k], pair.b[k],
         )  # fmt: skip
-        pair.point_x[k], pair.point_y[k], pair.point_z[k] = point
-        pair.normal_x[k], pair.normal_y[k], pair.normal_z[k] = normal
-        pair.penetration[k] = penetration
-        pair.search[k] = search
+        _note(pair, k, point, normal, penetration, search)
     _load(pair, held)
     for k in range(held):
         if pair.search[k]:
@@ -183,10 +190,7 @@ def _solve_edges(lane: Record, pair: Record, held: int, table: Table) -> None:
             pair.a[k], pair.b[k], pair.c[k], pair.lower[k] == _NONE,
             pair.d[k], pair.e[k], pair.f[k], pair.g[k], pair.h[k],
         )  # fmt: skip
-        pair.point_x[k], pair.point_y[k], pair.point_z[k] = point
-        pair.normal_x[k], pair.normal_y[k], pair.normal_z[k] = normal
-        pair.penetration[k] = penetration
-        pair.search[k] = search
+        _note(pair, k, point, normal, penetration, search)
     _load(pair, held)
     for k in range(held):
         if pair.search[k]:
