@@ -2,7 +2,7 @@
 
 `simulator.contact` defines the model and is the reference; this package repeats its results for
 millions of poses a second. Functions of numbers (`scalar`) carry the mathematics. On the CPU a
-kernel runs blocks of poses ("lanes") through them, one contact candidate after the other: it rules
-out the lanes that cannot touch, packs the others together, solves them in vectors, and hands the
+kernel runs blocks of poses ("lanes"), ordered by depth, through them, one contact candidate after
+the other: it solves the lanes from the first to the last that can touch, in vectors, and hands the
 few that need a search to scalar code. On the GPU a thread runs one pose through the same functions.
 """

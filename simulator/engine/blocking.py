@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from simulator.checks import FloatArray
 from simulator.compiled import Record, inlined, scalar
-from simulator.engine.direction import NEAR, direction, near_direction
+from simulator.engine.direction import best_direction
 from simulator.engine.loads import contact_load
 
 _ONE = np.uint64(1)
@@ -29,10 +29,7 @@ def find_ends(lane: Record, columns: FloatArray, edge: int, used: int) -> None:
     for j in range(used):
         sin, cos, x, y, z = lane.sin[j], lane.cos[j], lane.x[j], lane.y[j], lane.z[j]
         behind, radius, rounding = columns[edge, j], columns[edge + 1, j], columns[6, j]
-        m2, bulge = cos * (x - behind * sin), radius * sin * sin
-        e1, e2, ratio = near_direction(y, m2, bulge)
-        if not ratio <= NEAR:
-            e1, e2 = direction(y, m2, bulge)
+        e1, e2 = best_direction(y, cos * (x - behind * sin), radius * sin * sin)
         end_x, end_y, end_z, reach = _end(sin, cos, x, y, z, behind, radius, rounding, e1, e2)
         lane.end_x[j], lane.end_y[j], lane.end_z[j], lane.reach[j] = end_x, end_y, end_z, reach
         lane.lowest[j] = z - behind * cos + sin * radius + rounding
@@ -50,8 +47,8 @@ def stand_on_walls(
 ) -> None:
     """Carry `entered` on for wall number `wall`, and add the contact of ends that stand on it."""
     bit = _ONE << np.uint64(wall)
-    for j in range(count):
-        i = start + j
+    for pose in range(count):
+        i, j = start + pose, lane.at[pose]
         entry, clears = columns[mouth, j], lane.reach[j] <= columns[mouth + 1, j]
         entered[i, wall] = (lane.lowest[j] > entry) & (entered[i, wall] | clears)
         depth = lane.end_z[j] - entry

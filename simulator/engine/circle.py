@@ -93,7 +93,7 @@ def edge_circle(
     return Circle(kind, radius, tube, sin, cos, x, y, z - entry, exit_ - entry, x, y, z, 0.0, 0.0)
 
 
-@scalar
+@inlined
 def spot(circle: Circle, faces: FloatArray, e1: float, e2: float) -> Spot:
     """The point of the unit vector (e1 along, e2 across the tilt)."""
     a = circle.along + circle.cos * circle.radius * e1
@@ -120,7 +120,7 @@ def spot(circle: Circle, faces: FloatArray, e1: float, e2: float) -> Spot:
     return Spot(depth + circle.tube, radial, axial, (rho, a * inverse, b * inverse), at)
 
 
-@scalar
+@inlined
 def depth_slope(circle: Circle, point: Spot, e1: float, e2: float) -> float:
     """Slope of the depth with the angle."""
     lift = circle.sin * circle.radius
@@ -139,7 +139,7 @@ def _lower(least: Pieces, value: float, slope: float) -> Pieces:
     return least
 
 
-@scalar
+@inlined
 def effective(circle: Circle, point: Spot, depth_slope: float, e2: float) -> Pieces:
     """Effective penetration at a point, from the slope of the depth there."""
     entered, rise = point.at, circle.sin * circle.radius * e2

@@ -13,7 +13,6 @@ NEAR = 1.0 / 32.0
 _TINY = 1e-300
 _FLOOR = 1e-20
 _SMALLEST_SQUARE = 1e-290
-_NEAR_STEPS = 3
 _NEWTON_STEPS = 5
 
 
@@ -22,22 +21,23 @@ def near_direction(m1: float, m2: float, b: float) -> tuple[float, float, float]
     """The unit vector e, exact to rounding for b/|m| up to `NEAR`, and b/|m|; inf for m = 0.
 
     With m/|m| = (c, s) and v the sine of the angle from m to e, stationarity reads
-    v + b/(2|m|) sin(2 angle(m) + 2 asin(v)) = 0; each step with the slope at v = 0 reduces the
-    error by the square of b/|m|.
+    v + b/(2|m|) sin(2 angle(m) + 2 asin(v)) = 0. The start solves it up to third order in v; one
+    step of Newton's, its slope to second order in b/|m|, leaves rounding.
     """
     square = m1 * m1 + m2 * m2
     inverse = 1.0 / math.sqrt(square if square > _SMALLEST_SQUARE else _SMALLEST_SQUARE)
     c, s = m1 * inverse, m2 * inverse
     ratio = b * inverse if square > _SMALLEST_SQUARE else math.inf
     sine, cosine = ratio * c * s, ratio * (c - s) * (c + s)
-    step = 1.0 / (1.0 + cosine)
+    step = 1.0 - cosine * (1.0 - cosine * (1.0 - cosine * (1.0 - cosine)))
     v = -sine * step
+    v += v * v * (2.0 * sine + 0.5 * cosine * v) * step
     vv = v * v
     w = 1.0 - vv * (0.5 + vv * (0.125 + vv * 0.0625))
-    for _ in range(_NEAR_STEPS):
-        v -= (v + sine * (1.0 - 2.0 * vv) + cosine * v * w) * step
-        vv = v * v
-        w = 1.0 - vv * (0.5 + vv * (0.125 + vv * 0.0625))
+    change = (v + sine * (1.0 - 2.0 * vv) + cosine * v * w) * step
+    v -= change * (1.0 + (4.0 * sine + 1.5 * cosine * v) * v * step)
+    vv = v * v
+    w = 1.0 - vv * (0.5 + vv * (0.125 + vv * 0.0625))
     return c * w - s * v, s * w + c * v, ratio
 
 
@@ -55,3 +55,12 @@ def direction(m1: float, m2: float, b: float) -> tuple[float, float]:
         inverse = 1.0 / math.sqrt(e1 * e1 + e2 * e2)
         e1, e2 = e1 * inverse, e2 * inverse
     return math.copysign(e1, m1), math.copysign(e2, m2)
+
+
+@inlined
+def best_direction(m1: float, m2: float, b: float) -> tuple[float, float]:
+    """The unit vector e for any m and b, in the quickest way."""
+    e1, e2, ratio = near_direction(m1, m2, b)
+    if not ratio <= NEAR:
+        e1, e2 = direction(m1, m2, b)
+    return e1, e2

@@ -19,7 +19,7 @@ from simulator.engine.circle import (
     place,
     spot,
 )
-from simulator.engine.direction import direction
+from simulator.engine.direction import best_direction
 from simulator.engine.loads import Vector, Wrench, contact_load
 from simulator.engine.trigonometry import sin_cos
 
@@ -122,7 +122,8 @@ def greatest_penetration(circle: Circle, faces: FloatArray) -> float:
 
     Nothing is higher than a point that has entered farthest and is not limited otherwise. Else arcs
     are narrowed by the sign of the slope. Most peaks are where two functions cross, and most others
-    are smooth, so most steps go where Newton's method puts the crossing, or the secant the level.
+    are smooth: a step goes where Newton's method puts the crossing, or else where the secant puts
+    the level, if that is less than half as far as the last step went, or else to the middle.
     """
     side, best, start = _side(circle), -math.inf, 0.0
     entered = circle.length - circle.axial if circle.kind == TRAILING_EDGE else circle.axial
@@ -136,8 +137,8 @@ def greatest_penetration(circle: Circle, faces: FloatArray) -> float:
     while start < math.pi and best < limit - enough:
         low, high = start, _arc_end(circle, faces, start)
         start, angle = high, 0.5 * (low + high)
-        rise, fall = 0.0, 0.0
-        for step in range(1, _MOST_STEPS):
+        rise, fall, stride = 0.0, 0.0, high - low
+        for _ in range(_MOST_STEPS):
             e1, e2 = on_half(angle, side)
             point = spot(circle, faces, e1, e2)
             here = effective(circle, point, depth_slope(circle, point, e1, e2), e2)
@@ -152,12 +153,12 @@ def greatest_penetration(circle: Circle, faces: FloatArray) -> float:
                 high, fall = angle, -slope
             if high - low < _TOLERANCE or abs(slope) * (high - low) < enough:
                 break
-            middle = angle + apart / (slope - second_slope)
-            if not low < middle < high:
-                middle = low + (high - low) * rise / (rise + fall)
-            if step % 5 == 0 or not low < middle < high:
-                middle = 0.5 * (low + high)
-            angle = middle
+            target = angle + apart / (slope - second_slope)
+            if not (low < target < high and abs(target - angle) < 0.5 * stride):
+                target = low + (high - low) * rise / (rise + fall)
+            if not (low < target < high and abs(target - angle) < 0.5 * stride):
+                target = 0.5 * (low + high)
+            angle, stride = target, abs(target - angle)
     return best
 
 
@@ -168,9 +169,9 @@ def searched_contact(
     """Wrench of a circle's contact, with its ring, and the penetration."""
     bulge = circle.radius * circle.sin * circle.sin
     if circle.kind == RIM:
-        e1, e2 = direction(-circle.along * circle.cos, -circle.across, bulge)
+        e1, e2 = best_direction(-circle.along * circle.cos, -circle.across, bulge)
     else:
-        e2, e1 = direction(circle.across, circle.along * circle.cos, bulge)
+        e2, e1 = best_direction(circle.across, circle.along * circle.cos, bulge)
     point = spot(circle, faces, e1, e2)
     share, none = 1.0, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     # No point of the circle is deeper below the face at hand, or has entered farther, by more.

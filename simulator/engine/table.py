@@ -14,6 +14,7 @@ IntArray = npt.NDArray[np.int64]
 
 SHAFT_COLUMNS, RIM_COLUMNS, EDGE_COLUMNS, WALL_COLUMNS = 7, 2, 3, 5
 MOST_WALLS = 64
+MOST_RIMS = 3 * MOST_WALLS
 
 Geometry = tuple[Part, Shaft]
 
