@@ -44,6 +44,7 @@ _ARMS = np.array([1.0, 1.0, 1.0, ARM_M, ARM_M])
 # c of the top of this module, about the contact's own compliance; it has no part in the result.
 _SLIP_SLOPE = np.array([1e-4, 1e-4, 1e-4, 4.0, 4.0])
 _FRACTIONS = 0.5 ** np.arange(12.0)
+_CLOSER_LOOKS = 3
 _DAMPING = 1e-12
 
 
@@ -107,12 +108,7 @@ def settle(
             break
         step = system.limited(z, system.newton_step(z, residual[0]))
         step = np.where(active[..., np.newaxis], step, 0.0)
-        trials = z + _FRACTIONS.reshape(-1, *[1] * z.ndim) * step
-        wrenches, residuals = system.balance(trials)
-        best = _squares(residuals).argmin(axis=0)[np.newaxis, ..., np.newaxis]
-        z = np.take_along_axis(trials, best, axis=0)[0]
-        wrench = np.take_along_axis(wrenches, best, axis=0)
-        residual = np.take_along_axis(residuals, best, axis=0)
+        z, wrench, residual = system.search(z, step)
         error = _largest(residual[0])
     return system.result(z, wrench[0], error)
 
@@ -152,6 +148,34 @@ class _System:
         """Wrench and residual clip(z) - load(w) [N, N m], for trials (K, ..., 5)."""
         wrench, load = self.load(self.displacement(z)[0])
         return wrench, self.force(z) - load
+
+    def search(self, z: FloatArray, step: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The best point on the way from `z` to `z + step`, with wrench and residual of K = 1.
+
+        Lengths are halved down; then those are looked at more closely between which the residual
+        along the step changes its sign. Where a part slips out of contact, both ends may be far
+        off, and the far end a plateau that no step leads away from.
+        """
+        fractions = np.broadcast_to(
+            _FRACTIONS.reshape(-1, *[1] * (z.ndim - 1)), (len(_FRACTIONS), *z.shape[:-1])
+        )
+        found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        for _ in range(_CLOSER_LOOKS + 1):
+            trials = z + fractions[..., np.newaxis] * step
+            wrenches, residuals = self.balance(trials)
+            found.append((trials, wrenches, residuals))
+            along = (residuals * step / _ARMS**2).sum(axis=-1)
+            turns = (along[:-1] > 0.0) != (along[1:] > 0.0)
+            if not turns.any():
+                break
+            first = turns.argmax(axis=0)[np.newaxis]
+            far, near = (np.take_along_axis(fractions, first + k, axis=0) for k in (0, 1))
+            shares = np.linspace(0.0, 1.0, len(_FRACTIONS)).reshape(-1, *[1] * (z.ndim - 1))
+            fractions = far + shares * (near - far)
+        columns = [np.concatenate(arrays) for arrays in zip(*found, strict=True)]
+        best = _squares(columns[2]).argmin(axis=0)[np.newaxis, ..., np.newaxis]
+        point, wrench, residual = (np.take_along_axis(c, best, axis=0) for c in columns)
+        return point[0], wrench, residual
 
     def newton_step(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """The change of z that takes the linearised residual to zero."""
