@@ -68,6 +68,8 @@ class Truth:
     depth_m: float
     wrench: Wrench
     """On the part, about frame M's origin."""
+    shaft: Pose
+    """In frame M; the rotation about z, which makes no difference, is 0."""
 
 
 class MockWorld:
@@ -135,7 +137,7 @@ class MockWorld:
             return None
         pose = self._shaft_poses([time_ns])[0]
         contacts = self._contacts(pose)
-        depth = float(pose[2])
+        x, y, depth, rx, ry = pose.tolist()
         fx, fy, fz, tx, ty, tz = contacts.wrench.tolist()
         phase = int(phase_codes(self.settings.part, depth))
         doing = "inserting into" if is_inserting(phase) else "approaching"
@@ -146,6 +148,7 @@ class MockWorld:
             int(np.count_nonzero(contacts.penetration > 0.0)),
             depth,
             (fx, fy, fz, tx, ty, tz),
+            Pose((x, y, depth), (rx, ry, 0.0)),
         )
 
     def _has_changed(self) -> None:

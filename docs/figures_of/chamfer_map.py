@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from figures_of.paint import FAINT_COLOUR
 from figures_of.paper_part import PART, SHAFT
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.blocking import update_entered
 from simulator.contact import solve
 from simulator.geometry import Hole, Part, Shaft

@@ -19,7 +19,7 @@ from figures_of.paint import (
     note,
     pair,
 )
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.contact import solve
 from simulator.geometry import Hole, Part, Shaft, shaft_axis
 

@@ -11,7 +11,7 @@ from figures_of.paint import EDGE_COLOUR, OVERLAP_COLOUR, RIM_COLOUR, bare, note
 from figures_of.paper_part import PART, SHAFT
 from figures_of.section import Section
 from hil.figures import STATE_COLOURS
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.contact import solve
 from simulator.states import ContactState, contact_state, contact_states, phase_codes
 

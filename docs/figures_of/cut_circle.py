@@ -14,7 +14,7 @@ from figures_of.paint import (
     note,
 )
 from figures_of.paper_part import PART, SHAFT
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.contact import solve
 from simulator.geometry import shaft_axis
 

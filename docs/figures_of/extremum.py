@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from figures_of.paint import FAINT_COLOUR, SHAFT_LINE, note
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.extremum import NEWTON_STEPS
 
 FloatArray = npt.NDArray[np.float64]

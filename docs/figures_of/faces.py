@@ -22,7 +22,7 @@ from figures_of.paint import (
     note,
 )
 from figures_of.paper_part import PART, SHAFT
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.contact import solve
 from simulator.geometry import Shaft, shaft_axis
 from simulator.profile import Chamfer

@@ -9,7 +9,7 @@ from scipy import ndimage
 
 from figures_of.paint import WALL_LINE
 from figures_of.paper_part import PART, SHAFT
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.contact import solve
 from simulator.geometry import Part, Shaft
 from simulator.states import ContactState, contact_states, phase_codes

@@ -22,7 +22,7 @@ from figures_of.paint import (
 )
 from figures_of.paper_part import PART, SHAFT
 from figures_of.section import HALF_WIDTH, Section
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 from simulator.geometry import shaft_axis
 
 FloatArray = npt.NDArray[np.float64]

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from hil.figures.style import AXIS_COLOURS, RADIAL_COLOUR, drawing, svg
+from learning.drawing import AXIS_COLOURS, RADIAL_COLOUR, drawing, svg
 from simulator.contact import ContactLaw, solve
 from simulator.geometry import Hole, Part, Shaft, shaft_axis
 from simulator.wrench import move_torque

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 
-from hil.figures.style import WALL_COLOUR
+from learning.drawing import WALL_COLOUR
 
 SHAFT_COLOUR = "#C9D6E2"
 SHAFT_LINE = "#2F4A61"

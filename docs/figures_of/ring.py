@@ -15,7 +15,7 @@ from figures_of.paint import (
     note,
     pair,
 )
-from hil.figures.style import drawing, svg
+from learning.drawing import drawing, svg
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -8,14 +8,22 @@ from pydantic import Field, model_validator
 
 from drivers.contract.settings import DEGREES, MICRO, MILLI, Settings, written
 
+_Place = Annotated[float, Ge(-1_000_000), Le(1_000_000)]
 _Travel = Annotated[float, Gt(0), Le(100_000)]
 
 
-class ForceSensorSettings(Settings):
-    """What every force sensor states."""
+class SampledSettings(Settings):
+    """What every force sensor states, also one that no cell holds."""
 
     rate_Hz: Annotated[float, Ge(10), Le(20_000)]
     """Samples per second."""
+
+
+class ForceSensorSettings(SampledSettings):
+    """What every force sensor of a cell states."""
+
+    origin_m: Annotated[tuple[_Place, _Place, _Place], MICRO] = Field(alias="origin_um")
+    """Where the sensor is in frame M; torques are about it."""
 
 
 class DriftBand(Settings):

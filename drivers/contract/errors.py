@@ -25,6 +25,14 @@ class LogError(TenonError):
     """A log cannot be written or read."""
 
 
+class PolicyError(TenonError):
+    """A trained policy cannot be written, read or exported; the text names file and cause."""
+
+
+class TrainingError(TenonError):
+    """A training cannot be stored or taken up again."""
+
+
 class SafetyError(TenonError):
     """The safety supervisor does not allow what was asked for."""
 

@@ -13,7 +13,6 @@ from simulator.effects.flicker import Ladder, flicker
 from simulator.effects.sensor import SensorEffects
 
 _Bias = Annotated[float, Ge(-10_000), Le(10_000)]
-_Place = Annotated[float, Ge(-1_000_000), Le(1_000_000)]
 _Share = Annotated[float, Ge(-20), Le(20)]
 _Row = Annotated[tuple[_Share, _Share, _Share, _Share, _Share, _Share], PERCENT]
 
@@ -67,8 +66,6 @@ class MockForceSensorSettings(ForceSensorSettings):
         alias="torque_range_uNm"
     )
     """Largest torque, to either side, before an axis saturates."""
-    origin_m: Annotated[tuple[_Place, _Place, _Place], MICRO] = Field(alias="origin_um")
-    """Place of the sensor in frame M; torques are taken about it."""
     latency_s: Annotated[float, Ge(0), Le(100), MILLI] = Field(0.0, alias="latency_ms")
     """From the load to the stamp of the sample that reports it."""
     drift: DriftSettings | None = None

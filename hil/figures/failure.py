@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from controllers.messages import SkillPhase
 from hil.figures.insertion import draw_force, label_forces
-from hil.figures.style import AXIS_COLOURS, LIMIT_COLOUR, drawing, sheet, show_at_least, svg
+from hil.figures.style import sheet, show_at_least
 from hil.log_reader import ForceTrace, Log
 from hil.summary import InsertionSummary, Outcome, RunSummary
+from learning.drawing import AXIS_COLOURS, LIMIT_COLOUR, drawing, svg
 
 _TAIL_NS = 100_000_000
 """So much is shown of what came after the end."""

@@ -5,18 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from hil.figures.style import (
-    AXIS_COLOURS,
-    BAND_COLOUR,
-    RADIAL_COLOUR,
-    drawing,
-    legend,
-    shade_walls,
-    sheet,
-    svg,
-)
+from hil.figures.style import legend, shade_walls, sheet
 from hil.log_reader import Log, Rows
 from hil.summary import GENTLE_BAND_N, Forces, RunFacts
+from learning.drawing import AXIS_COLOURS, BAND_COLOUR, RADIAL_COLOUR, drawing, svg
 
 _BIN_MN = 2.0
 _BINS_MOST = 200

@@ -8,19 +8,17 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from hil.figures.style import (
-    AXIS_COLOURS,
     DARK_COLOURS,
     draw_limits,
-    drawing,
     legend,
     shade_walls,
     sheet,
     show_at_least,
-    svg,
     thinned,
 )
 from hil.log_reader import ForceTrace, Log, Rows
 from hil.summary import RunFacts
+from learning.drawing import AXIS_COLOURS, drawing, svg
 
 STATE_COLOURS: Mapping[str, str] = MappingProxyType(
     {

@@ -1,12 +1,8 @@
-"""What the figures share: colours, line thinning, hole walls, and the way to SVG."""
+"""What the figures of a report share: sizes, line thinning, hole walls and limits."""
 
-import io
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -14,6 +10,7 @@ from matplotlib.figure import Figure
 
 from controllers.messages import Severity
 from hil.log_reader import Rows
+from learning.drawing import LIMIT_COLOUR, WALL_COLOUR
 
 _WIDTH_IN = 11.0
 _LEFT_IN, _RIGHT_IN, _BOTTOM_IN = 0.72, 0.2, 0.5
@@ -23,13 +20,7 @@ Sheet = tuple[Figure, list[list[Axes]]]
 BINS = 700
 """So many bins across a figure are finer than what can be seen."""
 
-AXIS_COLOURS = ("#0072B2", "#D55E00", "#009E73")
-"""Of x, y and z: three that the colour-blind tell apart (Okabe and Ito)."""
 DARK_COLOURS = ("#00395A", "#7A2E00", "#00503A")
-BAND_COLOUR = "#DDF0E6"
-RADIAL_COLOUR = "#555555"
-LIMIT_COLOUR = "#A00000"
-WALL_COLOUR = "#E6E3DA"
 
 SEVERITY_MARKS: Mapping[Severity, tuple[str, str]] = MappingProxyType(
     {
@@ -41,37 +32,6 @@ SEVERITY_MARKS: Mapping[Severity, tuple[str, str]] = MappingProxyType(
     }
 )
 """Marker and colour."""
-
-_NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-
-
-@contextmanager
-def drawing() -> Iterator[None]:
-    """Draw inside with the report's fonts and colours, whatever the user's own settings are."""
-    with mpl.rc_context():
-        mpl.rcdefaults()
-        mpl.rcParams.update(
-            {
-                "svg.fonttype": "none",
-                "svg.hashsalt": "tenon",
-                "font.family": "sans-serif",
-                "font.sans-serif": ["DejaVu Sans"],
-                "font.size": 9.0,
-                "axes.titlesize": 10.0,
-                "axes.titleweight": "bold",
-                "axes.titlelocation": "left",
-                "axes.labelsize": 9.0,
-                "axes.spines.top": False,
-                "axes.spines.right": False,
-                "axes.axisbelow": True,
-                "legend.frameon": False,
-                "legend.fontsize": 8.5,
-                "lines.linewidth": 1.3,
-                "text.parse_math": False,
-                "path.simplify": False,
-            }
-        )
-        yield
 
 
 def sheet(height_in: float, top_in: float, ratios: Sequence[float], columns: int = 1) -> Sheet:
@@ -117,20 +77,6 @@ def show_at_least(axes: Axes, least: float) -> None:
     """Widen the y axis, so that it reaches from -`least` to `least` or further."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -least), max(high, least))
-
-
-def svg(figure: Figure, name: str, description: str) -> str:
-    """Return a figure as an SVG element that can stand beside others in one page.
-
-    The same figure gives the same text. Its ids begin with `name`; `description` is for those who
-    cannot see it.
-    """
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", metadata=_NO_METADATA)
-    text = stream.getvalue()
-    text = text[text.index("<svg ") :]
-    text = re.sub(r'( id="| xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
-    return text.replace("<svg ", f'<svg role="img" aria-label="{description}" ', 1)
 
 
 def thinned(x: Rows, y: Rows, bins: int = BINS) -> tuple[Rows, Rows]:

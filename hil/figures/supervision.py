@@ -4,19 +4,11 @@ import math
 
 import numpy as np
 
-from hil.figures.style import (
-    LIMIT_COLOUR,
-    SEVERITY_MARKS,
-    draw_level,
-    drawing,
-    legend,
-    shade_walls,
-    sheet,
-    svg,
-)
+from hil.figures.style import SEVERITY_MARKS, draw_level, legend, shade_walls, sheet
 from hil.log_reader import Log
 from hil.summary import RunSummary, step_records
 from hil.summary.words import SEVERITIES
+from learning.drawing import LIMIT_COLOUR, drawing, svg
 
 
 def governor_figure(log: Log, summary: RunSummary) -> str:

@@ -11,7 +11,7 @@ from typing import Annotated
 from annotated_types import Ge, Gt, Le, Lt
 from pydantic import Field, model_validator
 
-from drivers.contract.device_settings import DriftBand, ForceSensorSettings
+from drivers.contract.device_settings import DriftBand, SampledSettings
 from drivers.contract.settings import DEGREES, MICRO, MILLI, NANO, ONE, PERCENT, Settings
 from learning.randomisation.distribution import OFF, DistributionSettings, Spread
 from simulator.randomisation.rig import (
@@ -46,7 +46,7 @@ class DriftDistributionSettings(DriftBand):
         )
 
 
-class SensorDistributionSettings(ForceSensorSettings):
+class SensorDistributionSettings(SampledSettings):
     """The force sensor."""
 
     force_noise_N_rtHz: _ForceDensity = Field(OFF, alias="force_noise_uN_rtHz")

@@ -103,7 +103,8 @@ class Accepted:
             return "a list with at least one entry" if is_demanded else "a list"
         if origin is tuple:
             bounds = Accepted.of(arguments[0]).range
-            return f"a list of {len(arguments)} numbers{f', each {bounds}' if bounds else ''}"
+            things = "texts" if arguments[0] is str else "numbers"
+            return f"a list of {len(arguments)} {things}{f', each {bounds}' if bounds else ''}"
         if origin is Literal:
             return " or ".join(str(a) for a in arguments)
         if origin is dict:

@@ -7,7 +7,10 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     ForceEstimate,
     Observation,
@@ -114,7 +117,7 @@ class RunWriter:
         """Propose a step on the newest sample, and answer it 1 ms later."""
         self._proposals += 1
         pose = Pose((0.0, 0.0, self._depth_um * 1e-6))
-        observation = Observation(self.now_ns, 0, ZERO6, ZERO6, pose, (0.0, 0.0, 0.0))
+        observation = Observation(self.now_ns, 0, ZERO6, ZERO6, pose, (0.0, 0.0, 0.0), pose)
         proposal = Proposal(self.now_ns, self._proposals, "expert", (1e-6, 0.0, 5e-5))
         self._recorder.on_proposal(observation, proposal)
         self.now_ns += MS
@@ -132,7 +135,17 @@ class RunWriter:
     def contact(self, state: str) -> None:
         """State the truth about the contact, as a mock cell does."""
         depth_m = self._depth_um * 1e-6
-        self._recorder.on_truth(ContactTruth(self.now_ns, state, "", 1, depth_m, ZERO6))
+        shaft = Pose((0.0, 0.0, depth_m))
+        self._recorder.on_truth(ContactTruth(self.now_ns, state, "", 1, depth_m, ZERO6, shaft))
+
+    def believe(self, offset_um: float, std_um: float) -> None:
+        """Believe in an offset along x on the newest sample, and propose a step."""
+        covariance = np.diag([std_um * 1e-6, 1e-6, 1e-3, 1e-3, 1e3, 1e-6, 0.1]) ** 2
+        mean = (offset_um * 1e-6, 0.0, 0.0, 0.0, 4e3, 1e-5, 0.2)
+        self._recorder.on_belief(
+            ContactBelief(self.now_ns, mean, tuple(covariance.ravel().tolist()), "c", 0.9, 6.0, 0)
+        )
+        self.step()
 
     def reset(self, operator: str) -> None:
         """Let an operator reset the supervisor 1 ms later."""

@@ -273,4 +273,5 @@ def test_the_reference_states_unit_and_range_of_every_key_and_no_other() -> None
 
 
 def test_files_of_the_folder_load() -> None:
-    assert {file.name for file in Path(SHIPPED).iterdir()} == {"nominal.yaml", "wide.yaml"}
+    names = {file.name for file in Path(SHIPPED).iterdir()}
+    assert names == {"extended.yaml", "nominal.yaml", "online.yaml", "wide.yaml"}
