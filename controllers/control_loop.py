@@ -12,7 +12,9 @@ from controllers.governor import Travel
 from controllers.insertion import REACHED_M, InsertionSkill
 from controllers.limits import Limits
 from controllers.messages import (
+    ContactBelief,
     ForceEstimate,
+    Move,
     Observation,
     PhaseChange,
     Proposal,
@@ -36,6 +38,8 @@ _TICKS_BETWEEN_TRIES = 50
 """Under a hold a controller is asked again at most every so many samples."""
 _WITHDRAW_REFUSALS = 20
 """So many refusals in a row end a withdrawal."""
+_HOME_M, _HOME_RAD = 2e-7, 1e-5
+"""So near the start, in clear air, a withdrawal ends: a stage need not be as repeatable there."""
 _LAME_STEPS = 5
 """So many sent steps in a row without progress end the run: the stage does not follow."""
 _PROGRESS = 0.1
@@ -61,6 +65,9 @@ class Subscriber:
 
     def on_tick(self, tick: Tick) -> None:
         """A verdict on the cell's state has been carried out."""
+
+    def on_belief(self, belief: ContactBelief) -> None:
+        """A controller says what it believes; what it then proposes follows."""
 
     def on_proposal(self, observation: Observation, proposal: Proposal) -> None:
         """A controller has answered an observation."""
@@ -144,38 +151,45 @@ class ControlLoop:
     def insert(self, skill: InsertionSkill, number: int, source: str) -> None:
         """Let `skill` lead insertion `number`, its steps signed by `source`, to done or failed."""
         tick = self.tick()
-        origin = _stage(tick).pose
+        origin = commanded = _stage(tick).pose
         phase: SkillPhase | None = None
         while True:
-            observation = observe(tick, skill.steps, origin)
-            translation = skill.next_step(observation)
+            tick, hardest = self._think(skill, tick, origin, commanded)
+            if hardest.severity is Severity.STOP:
+                skill.heed(hardest, was_sent=False)
+            observation = observe(tick, skill.steps, origin, commanded)
+            move = skill.next_step(observation)
             if skill.phase is not phase:
                 phase = skill.phase
                 change = PhaseChange(tick.start_ns, number, phase, skill.reason, skill.steps)
                 for subscriber in self._subscribers:
                     subscriber.on_phase(change)
-            if translation is None:
+            if move is None:
                 return
-            step = self.step(tick, observation, translation, source)
-            skill.heed(step.hardest, was_sent=step.sent.target is not None)
-            tick = step.tick
+            belief = skill.believed(observation)
+            if belief is not None:
+                for subscriber in self._subscribers:
+                    subscriber.on_belief(belief)
+            step = self.step(tick, observation, move, source)
+            skill.heed(_harder(hardest, step.hardest), was_sent=step.sent.target is not None)
+            tick, commanded = step.tick, step.sent.target or commanded
 
-    def withdraw(self, depth_m: float, longest_m: float) -> bool:
-        """Lead the stage straight out to `depth_m` in steps of at most `longest_m`.
+    def withdraw(self, start: Pose) -> bool:
+        """Lead the stage straight out to the depth of `start`, and there to `start` itself.
 
         Returns False if the supervisor does not let it.
         """
         tick = self.tick()
-        origin = _stage(tick).pose
+        origin = commanded = _stage(tick).pose
         refusals = 0
         while refusals <= _WITHDRAW_REFUSALS:
-            observation = observe(tick, 0, origin)
-            left_m = observation.depth_m - depth_m
-            if left_m <= REACHED_M:
+            observation = observe(tick, 0, origin, commanded)
+            move = _way_back(observation.pose, start, self._gate.limits)
+            if move is None:
                 return True
-            step = self.step(tick, observation, (0.0, 0.0, -min(longest_m, left_m)), "withdraw")
+            step = self.step(tick, observation, move, "withdraw")
             refusals = refusals + 1 if step.sent.target is None else 0
-            tick = step.tick
+            tick, commanded = step.tick, step.sent.target or commanded
         return False
 
     def reset(self, operator: str) -> ResetRecord:
@@ -185,14 +199,14 @@ class ControlLoop:
             subscriber.on_reset(record)
         return record
 
-    def step(self, tick: Tick, observation: Observation, translation: Vector3, source: str) -> Step:
-        """Propose a step on the newest tick, have it sent, and turn until the stage has settled.
+    def step(self, tick: Tick, observation: Observation, move: Move, source: str) -> Step:
+        """Propose a move on the newest tick, have it sent, and turn until the stage has settled.
 
         Raises DeviceTimeoutError if the stage does not come to rest, and DeviceError if it has not
         followed several steps in a row.
         """
         self._proposals += 1
-        proposal = Proposal(observation.stamp_ns, self._proposals, source, translation)
+        proposal = Proposal(observation.stamp_ns, self._proposals, source, *move)
         for subscriber in self._subscribers:
             subscriber.on_proposal(observation, proposal)
         sent = self._gate.send_step(proposal, tick.snapshot, self._clock.now_ns())
@@ -203,6 +217,24 @@ class ControlLoop:
         step = self._settle(sent)
         self._demand_progress(observation.pose, sent.target, step)
         return step
+
+    def _think(
+        self, skill: InsertionSkill, tick: Tick, origin: Pose, commanded: Pose
+    ) -> tuple[Tick, Verdict]:
+        """Turn after each piece of the skill's work on what `tick` shows, once per sample due.
+
+        A cell that has stopped is not thought about. Returns the newest tick and the hardest
+        verdict from `tick` on.
+        """
+        hardest = tick.verdict
+        if hardest.severity is Severity.STOP:
+            return tick, hardest
+        for _ in skill.think(observe(tick, skill.steps, origin, commanded)):
+            piece_s = (self._clock.now_ns() - tick.end_ns) * 1e-9
+            for _ in range(1 + int(piece_s * self._sensor.rate_Hz)):
+                tick = self.tick()
+                hardest = _harder(hardest, tick.verdict)
+        return tick, hardest
 
     def _demand_progress(self, start: Pose, target: Pose, step: Step) -> None:
         if target == start:
@@ -220,7 +252,7 @@ class ControlLoop:
         hardest = sent.verdict
         for _ in range(_TICKS_BETWEEN_TRIES):
             tick = self.tick()
-            hardest = max(hardest, tick.verdict, key=lambda verdict: verdict.severity)
+            hardest = _harder(hardest, tick.verdict)
             if tick.verdict.severity < Severity.HOLD:
                 break
         return Step(sent, hardest, tick)
@@ -231,7 +263,7 @@ class ControlLoop:
         rest_ns: int | None = None
         while True:
             tick = self.tick()
-            hardest = max(hardest, tick.verdict, key=lambda verdict: verdict.severity)
+            hardest = _harder(hardest, tick.verdict)
             if tick.snapshot.stage is None or tick.snapshot.stage.moving:
                 rest_ns = None
             elif rest_ns is None:
@@ -244,8 +276,10 @@ class ControlLoop:
                 )
 
 
-def observe(tick: Tick, steps: int, origin: Pose) -> Observation:
-    """Return what a controller may know after `tick`; `origin` is the pose at the start.
+def observe(tick: Tick, steps: int, origin: Pose, commanded: Pose) -> Observation:
+    """Return what a controller may know after `tick`.
+
+    `origin` is the pose at the start, `commanded` where the stage was last sent, or stands.
 
     Raises DeviceError where force or stage have not been heard yet.
     """
@@ -253,7 +287,31 @@ def observe(tick: Tick, steps: int, origin: Pose) -> Observation:
     if estimate is None:
         raise DeviceError("there is no force estimate yet")
     x, y, z = (p - o for p, o in zip(pose.position, origin.position, strict=True))
-    return Observation(tick.start_ns, steps, estimate.wrench, estimate.std, pose, (x, y, z))
+    return Observation(
+        tick.start_ns, steps, estimate.wrench, estimate.std, pose, (x, y, z), commanded
+    )
+
+
+def _harder(verdict: Verdict, other: Verdict) -> Verdict:
+    return other if other.severity > verdict.severity else verdict
+
+
+def _way_back(pose: Pose, start: Pose, limits: Limits) -> Move | None:
+    """Return the next move of a withdrawal to `start`; None once the stage is there."""
+    left_m = pose.position[2] - start.position[2]
+    if left_m > REACHED_M:
+        return Move((0.0, 0.0, -min(limits.step_m[2], left_m)))
+    (x, y, _), (to_x, to_y, _) = pose.position, start.position
+    turns = [to - at for at, to in zip(pose.rotation, start.rotation, strict=True)]
+    if math.hypot(to_x - x, to_y - y) <= _HOME_M and math.hypot(*turns) <= _HOME_RAD:
+        return None
+    across = [_within(d, box) for d, box in zip((to_x - x, to_y - y), limits.step_m, strict=False)]
+    rx, ry, rz = (_within(turn, limits.rotation_step_rad) for turn in turns)
+    return Move((across[0], across[1], 0.0), (rx, ry, rz))
+
+
+def _within(value: float, bound: float) -> float:
+    return max(-bound, min(bound, value))
 
 
 def _comes_nearer(start: Vector3, end: Vector3, target: Vector3) -> bool:

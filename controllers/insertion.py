@@ -3,9 +3,18 @@
 A state machine without devices: it is shown what happened and says which step it wants next.
 """
 
-from typing import Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
 
-from controllers.messages import Observation, Reason, Severity, SkillPhase, Verdict
+from controllers.messages import (
+    ContactBelief,
+    Move,
+    Observation,
+    Reason,
+    Severity,
+    SkillPhase,
+    Verdict,
+)
 from controllers.settings import InsertionSettings, SkillSettings
 from drivers.contract.messages import Vector3
 
@@ -16,10 +25,20 @@ HOVER_M = 20e-6
 """The approach ends so far above the rim: the end face of a tilted shaft dips below its centre."""
 
 
-class Controller(Protocol):
-    """Answers an observation with a translation [m] in frame M."""
+class Controller(ABC):
+    """Answers observations with moves of the stage; one object leads one insertion."""
 
-    def step(self, observation: Observation) -> Vector3: ...
+    def think(self, observation: Observation) -> Iterator[None]:
+        """Work on an observation in pieces, so that the control loop can turn in between."""
+        return iter(())
+
+    def believed(self, observation: Observation) -> ContactBelief | None:
+        """What is believed of pose and part as `observation` is answered, if anything is."""
+        return None
+
+    @abstractmethod
+    def step(self, observation: Observation) -> Move:
+        """Return the move to propose, once the observation has been thought over."""
 
 
 class InsertionSkill:
@@ -46,17 +65,34 @@ class InsertionSkill:
         self.steps = 0
         """Steps sent in the insert phase."""
 
-    def next_step(self, observation: Observation) -> Vector3 | None:
-        """Return the translation to propose [m], frame M; None once the insertion is over."""
+    def think(self, observation: Observation) -> Iterator[None]:
+        """Let the controller work on an observation, in pieces; only it has to think."""
+        self._enter_next_phase(observation)
+        if self.phase is SkillPhase.INSERT:
+            yield from self._controller.think(observation)
+
+    def believed(self, observation: Observation) -> ContactBelief | None:
+        """What the controller believes as it answers `observation`."""
+        if self.phase is SkillPhase.INSERT:
+            return self._controller.believed(observation)
+        return None
+
+    def next_step(self, observation: Observation) -> Move | None:
+        """Return the move to propose; None once the insertion is over.
+
+        The controller's ends at the stroke; its rotation stays as it is.
+        """
         self._enter_next_phase(observation)
         depth = observation.depth_m
         if self.phase is SkillPhase.APPROACH:
-            return (0.0, 0.0, min(self._longest_m, -HOVER_M - depth))
+            return Move((0.0, 0.0, min(self._longest_m, -HOVER_M - depth)))
         if self.phase is SkillPhase.INSERT:
-            dx, dy, dz = self._controller.step(observation)
-            return (dx, dy, min(dz, self._insertion.stroke_m - depth))
+            wanted = self._controller.step(observation)
+            dx, dy, dz = wanted.translation
+            dz = min(dz, self._insertion.stroke_m - depth)
+            return wanted._replace(translation=(dx, dy, dz))
         if self.phase is SkillPhase.RETRACT:
-            return (0.0, 0.0, -min(self._longest_m, depth - self._skill.start_depth_m))
+            return Move((0.0, 0.0, -min(self._longest_m, depth - self._skill.start_depth_m)))
         return None
 
     def heed(self, verdict: Verdict, was_sent: bool) -> None:

@@ -59,10 +59,48 @@ class Observation:
     """Stage pose in frame M; its z is the depth p_z."""
     displacement: Vector3
     """Stage position since the insertion began [m]."""
+    commanded: Pose
+    """Where the stage was last sent, and before the first step where it stands."""
 
     @property
     def depth_m(self) -> float:
         return self.pose.position[2]
+
+
+class Move(NamedTuple):
+    """A step of the stage, relative to where it is, in frame M."""
+
+    translation: Vector3
+    """[m]."""
+    rotation: Vector3 = ZERO3
+    """[rad] about x, y, z, around the centre of the shaft's leading end."""
+    expected_force: Vector3 = ZERO3
+    """See `Proposal.expected_force`."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactBelief:
+    """What a controller believes of the hidden pose and of the part, by contact."""
+
+    stamp_ns: int
+    """Of the observation that it answers."""
+    mean: tuple[float, ...]
+    """Seven parameters: how far the shaft is beside where the stage says, x and y [m], and turned
+    from it, about x and y [rad]; stiffness [N/m], clearance of the first hole [m], friction."""
+    covariance: tuple[float, ...]
+    """49 values, row by row, in the units of `mean`."""
+    state: str
+    """The most likely contact state."""
+    state_probability: float
+    misfit: float
+    """Mean squared misfit of the newest reading; about 6 where the contact model holds."""
+    restarts: int
+    """How often in this insertion the belief was lost and searched anew."""
+
+    @property
+    def std(self) -> tuple[float, ...]:
+        """Standard deviation of each parameter."""
+        return tuple(math.sqrt(v) for v in self.covariance[:: len(self.mean) + 1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +115,8 @@ class Proposal:
     """[m], frame M."""
     rotation: Vector3 = ZERO3
     """[rad] about x, y, z."""
+    expected_force: Vector3 = ZERO3
+    """Largest force that the step may lead to, as far as its source foresees [N]."""
 
 
 class Severity(IntEnum):

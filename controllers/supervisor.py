@@ -117,8 +117,9 @@ def judge(
 
     Returns the verdict and the step that may be sent in its place, None if it is refused.
     """
-    if not finite(proposal.translation, proposal.rotation):
-        detail = f"proposal {proposal.translation}, {proposal.rotation} of {proposal.source}"
+    if not finite(proposal.translation, proposal.rotation, proposal.expected_force):
+        values = f"{proposal.translation}, {proposal.rotation}, {proposal.expected_force}"
+        detail = f"proposal {values} of {proposal.source}"
         reason = Reason(Rule.NON_FINITE, Severity.STOP, detail)
         return Verdict(now_ns, (*standing.reasons, reason), standing.speed_cap_m_s), None
     step, reductions = _reduced(limits, snapshot, proposal)
@@ -138,18 +139,22 @@ def judge(
 
 
 def governed_speed(
-    limits: Limits, load: Load | None, estimate: ForceEstimate | None, travel: Travel
+    limits: Limits,
+    load: Load | None,
+    estimate: ForceEstimate | None,
+    travel: Travel,
+    expected: Vector3 = ZERO3,
 ) -> float:
-    """Return the governor's cap [m/s] under the larger of raw and estimated force.
+    """Return the governor's cap [m/s] under the largest of raw, estimated and expected force.
 
-    Creep speed where either is unknown.
+    Creep speed where raw or estimated force is unknown.
     """
     if load is None or estimate is None:
         return limits.creep_speed_m_s
     raw, filtered, std = load.force, estimate.wrench, estimate.std
-    x = max(abs(raw[0]), abs(filtered[0]))
-    y = max(abs(raw[1]), abs(filtered[1]))
-    z = max(abs(raw[2]), abs(filtered[2]))
+    x = max(abs(raw[0]), abs(filtered[0]), abs(expected[0]))
+    y = max(abs(raw[1]), abs(filtered[1]), abs(expected[1]))
+    z = max(abs(raw[2]), abs(filtered[2]), abs(expected[2]))
     return speed_cap(limits, (x, y, z), (std[0], std[1], std[2]), travel)
 
 
@@ -227,7 +232,7 @@ def _reduced(
     if travel.length_m < SHORTEST_MOVE_M:
         translation, rotation = ZERO3, ZERO3
     load = weigh(limits, Memory(), snapshot)
-    speed = governed_speed(limits, load, snapshot.estimate, travel)
+    speed = governed_speed(limits, load, snapshot.estimate, travel, proposal.expected_force)
     unloaded = speed_cap(limits, ZERO3, ZERO3, travel)
     if travel.angle_rad > 0.0:
         turning = limits.angular_speed_rad_s * travel.length_m / travel.angle_rad

@@ -3,7 +3,7 @@
 import pytest
 
 from controllers.insertion import InsertionSkill
-from controllers.messages import Observation, Reason, Rule, Severity, SkillPhase, Verdict
+from controllers.messages import Move, Observation, Reason, Rule, Severity, SkillPhase, Verdict
 from controllers.proportional import ProportionalController
 from controllers.settings import InsertionSettings, ProportionalSettings, SkillSettings
 from drivers.contract.messages import Pose, Vector3
@@ -23,11 +23,14 @@ INSERTION = InsertionSettings.model_validate(
 )
 
 
-class Straight:
-    """Goes in by 50 um and a little sideways."""
+TURN = (3e-4, -4e-4, 0.0)
 
-    def step(self, observation: Observation) -> Vector3:
-        return (1e-6, 2e-6, 50e-6)
+
+class Straight:
+    """Goes in by 50 um and a little sideways, and turns a little."""
+
+    def step(self, observation: Observation) -> Move:
+        return Move((1e-6, 2e-6, 50e-6), TURN)
 
 
 def new_skill() -> InsertionSkill:
@@ -37,7 +40,13 @@ def new_skill() -> InsertionSkill:
 def seen(depth_um: float, force_mN: Vector3 = (0.0, 0.0, 0.0)) -> Observation:
     fx, fy, fz = (f * 1e-3 for f in force_mN)
     wrench = (fx, fy, fz, 0.0, 0.0, 0.0)
-    return Observation(0, 0, wrench, (0.0,) * 6, Pose((0.0, 0.0, depth_um * 1e-6)), (0.0,) * 3)
+    pose = Pose((0.0, 0.0, depth_um * 1e-6))
+    return Observation(0, 0, wrench, (0.0,) * 6, pose, (0.0,) * 3, pose)
+
+
+def straight(dz_m: float) -> Move:
+    """What the skill itself proposes: along z, without a turn."""
+    return Move((0.0, 0.0, pytest.approx(dz_m)), (0.0, 0.0, 0.0))
 
 
 def verdict(severity: Severity, at_ms: float = 0.0) -> Verdict:
@@ -55,12 +64,12 @@ def inserting() -> InsertionSkill:
 def test_it_approaches_by_whole_steps_and_stops_short_at_the_rim() -> None:
     skill = new_skill()
     for depth, dz in ((-300.0, 60e-6), (-81.0, 60e-6), (-45.0, 25e-6)):
-        assert skill.next_step(seen(depth)) == pytest.approx((0.0, 0.0, dz))
+        assert skill.next_step(seen(depth)) == straight(dz)
         assert skill.phase is SkillPhase.APPROACH
     assert skill.next_step(seen(-20.0, (30.0, 0.0, 0.0))) is not None
     assert skill.phase is SkillPhase.RETRACT, "nothing can touch at 20 um above the rim"
     skill = new_skill()
-    assert skill.next_step(seen(-20.0)) == (1e-6, 2e-6, 50e-6)
+    assert skill.next_step(seen(-20.0)) == Move((1e-6, 2e-6, 50e-6), TURN)
     assert skill.phase is SkillPhase.INSERT
 
 
@@ -74,14 +83,18 @@ def test_contact_in_the_approach(axis: int, sign: float, force_mN: float, contac
     step = skill.next_step(seen(-150.0, (force[0], force[1], force[2])))
     assert (skill.phase is SkillPhase.RETRACT) is contact
     assert step is not None
-    assert (step[2] < 0.0) is contact
+    assert (step.translation[2] < 0.0) is contact
+    assert step.rotation == (0.0, 0.0, 0.0)
     if contact:
         assert skill.reason == "contact in the approach: 10.1 mN"
 
 
 def test_the_last_step_ends_at_the_stroke_and_the_insertion_is_done() -> None:
     skill = inserting()
-    assert skill.next_step(seen(3180.0)) == pytest.approx((1e-6, 2e-6, 20e-6))
+    move = skill.next_step(seen(3180.0))
+    assert move is not None
+    assert move.translation == pytest.approx((1e-6, 2e-6, 20e-6))
+    assert move.rotation == TURN, "it may turn to its end"
     assert skill.next_step(seen(3200.0)) is None
     assert (skill.phase, skill.reason) == (SkillPhase.DONE, "")
 
@@ -114,9 +127,9 @@ def test_after_a_failure_it_leads_back_out_and_keeps_the_reason() -> None:
     skill = inserting()
     skill.heed(verdict(Severity.RETREAT), was_sent=True)
     assert (skill.phase, skill.reason) == (SkillPhase.RETRACT, "force limit: too much")
-    assert skill.next_step(seen(500.0)) == pytest.approx((0.0, 0.0, -60e-6))
+    assert skill.next_step(seen(500.0)) == straight(-60e-6)
     skill.heed(verdict(Severity.RETREAT), was_sent=True)
-    assert skill.next_step(seen(-280.0)) == pytest.approx((0.0, 0.0, -20e-6))
+    assert skill.next_step(seen(-280.0)) == straight(-20e-6)
     assert skill.next_step(seen(-300.0)) is None
     assert (skill.phase, skill.reason) == (SkillPhase.FAILED, "force limit: too much")
 
@@ -179,4 +192,5 @@ def test_expert_and_conventional_controller(
         60e-6,
     )
     step = controller.step(seen(100.0, force_mN))
-    assert step == pytest.approx(tuple(v * 1e-6 for v in step_um), abs=1e-18)
+    assert step.translation == pytest.approx(tuple(v * 1e-6 for v in step_um), abs=1e-18)
+    assert step.rotation == (0.0, 0.0, 0.0)

@@ -74,6 +74,31 @@ def test_rotation_step(axis: int, sign: float, turn_deg: float, sent_deg: float)
     assert (Rule.STEP_BOX in rules(verdict)) is (turn_deg > 0.05)
 
 
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_turn_at_its_limit_is_not_cut_and_the_next_number_is(axis: int, sign: float) -> None:
+    limit = math.radians(0.05)
+    for turn, is_cut in ((limit, False), (math.nextafter(limit, 1.0), True)):
+        rotation = [0.0, 0.0, 0.0]
+        rotation[axis] = sign * turn
+        verdict, step = judged(proposal((0.0, 0.0, 0.0), rotation=tuple(rotation)))
+        assert step is not None
+        assert step.rotation[axis] == sign * limit
+        assert (Rule.STEP_BOX in rules(verdict)) is is_cut
+
+
+def test_a_move_that_turns_is_cut_along_and_about_each_axis() -> None:
+    """20 um and 0.05 deg on 4 mm are 23.49 um across the hole; 1 deg/s allows 0.05 s for it."""
+    turn = tuple(math.radians(v) for v in (0.0, -0.3, 0.0))
+    verdict, step = judged(proposal((25e-6, 0.0, 0.0), rotation=turn))
+    assert step is not None
+    assert step.translation == pytest.approx((20e-6, 0.0, 0.0))
+    assert step.rotation == pytest.approx((0.0, -8.7266e-4, 0.0), abs=1e-8)
+    assert step.travel.radial_m == pytest.approx(23.4907e-6, abs=1e-10)
+    assert step.speed_m_s == pytest.approx(469.81e-6, abs=1e-8)
+    assert [r.rule for r in verdict.reasons].count(Rule.STEP_BOX) == 2
+
+
 @pytest.mark.parametrize(
     ("translation", "load", "speed_mm_s"),
     [
@@ -118,6 +143,43 @@ def test_governor_takes_the_larger_of_raw_and_estimate_and_adds_three_sigma() ->
         assert step.speed_m_s == pytest.approx(0.8940e-3, abs=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("load_mN", "expected_mN", "speed_mm_s"),
+    [
+        (0.0, 0.0, 1.5707),
+        (0.0, 35.0, 0.8940),
+        (0.0, -35.0, 0.8940),
+        (35.0, 0.0, 0.8940),  # a belief that foresees less than there is loosens nothing
+        (35.0, 20.0, 0.8940),
+        (-35.0, 20.0, 0.8940),
+        (10.0, 35.0, 0.8940),
+        (0.0, 69.9, 0.1),
+        (0.0, 1e9, 0.1),
+    ],
+)
+def test_governor_takes_the_larger_of_measured_and_expected_force(
+    load_mN: float, expected_mN: float, speed_mm_s: float
+) -> None:
+    sideways = proposal((20e-6, 0.0, 0.0), expected_force=(expected_mN * 1e-3, 0.0, 0.0))
+    verdict, step = judged(sideways, sample=sample((load_mN * 1e-3, 0.0, 0.0)))
+    assert step is not None
+    assert step.speed_m_s == pytest.approx(speed_mm_s * 1e-3, abs=1e-7)
+    assert rules(verdict) == ({Rule.GOVERNOR} if speed_mm_s < 1.5 else set())
+
+
+@pytest.mark.parametrize(
+    ("axis", "expected_mN", "speed_mm_s"), [(1, 65.0, 0.8940), (2, 930.0, 1.5707)]
+)
+def test_the_expected_force_is_held_against_the_limit_of_its_axis(
+    axis: int, expected_mN: float, speed_mm_s: float
+) -> None:
+    expected = [0.0, 0.0, 0.0]
+    expected[axis] = expected_mN * 1e-3
+    _, step = judged(proposal((20e-6, 0.0, 0.0), expected_force=tuple(expected)))
+    assert step is not None
+    assert step.speed_m_s == pytest.approx(speed_mm_s * 1e-3, abs=1e-7)
+
+
 def test_rotation_is_governed_by_its_lever_and_the_angular_limit() -> None:
     """0.05 deg on 4 mm are 3.49 um across the hole; 1 deg/s on 4 mm is 69.8 um/s."""
     turn = math.radians(0.05)
@@ -157,6 +219,21 @@ def test_tilt(tilt_deg: float, inside: bool) -> None:
     assert (step is not None) is inside
 
 
+@pytest.mark.parametrize(("tilt_deg", "inside"), [(0.599, True), (0.601, False)])
+@pytest.mark.parametrize("signs", [(1.0, 1.0, 1.0), (-1.0, 1.0, -1.0), (1.0, -1.0, -1.0)])
+def test_tilt_counts_all_axes_together(signs: Vector3, tilt_deg: float, inside: bool) -> None:
+    """Shares 2, 3 and 6 of 7 about x, y and z; the last 0.04 deg about each are asked for."""
+    there = [
+        math.radians(tilt_deg) * s * share / 7.0 for s, share in zip(signs, (2, 3, 6), strict=True)
+    ]
+    step = [s * math.radians(0.04) for s in signs]
+    x, y, z = (t - s for t, s in zip(there, step, strict=True))
+    state = stage(pose=Pose((0.0, 0.0, 0.0), (x, y, z)))
+    verdict, sent = judged(proposal((0.0, 0.0, 0.0), rotation=tuple(step)), stage=state)
+    assert (sent is not None) is inside
+    assert (Rule.WORKSPACE in rules(verdict)) is not inside
+
+
 @pytest.mark.parametrize(
     ("age_ms", "sent"),
     [(-0.001, False), (0.0, True), (50.0, True), (50.001, False)],
@@ -183,7 +260,12 @@ def test_non_finite_proposal_stops(axis: int, value: float) -> None:
     broken = [0.0, 0.0, 0.0]
     broken[axis] = value
     vector = (broken[0], broken[1], broken[2])
-    for wrong in (proposal(vector), proposal((0.0, 0.0, 0.0), rotation=vector)):
+    still = (0.0, 0.0, 0.0)
+    for wrong in (
+        proposal(vector),
+        proposal(still, rotation=vector),
+        proposal(still, expected_force=vector),
+    ):
         verdict, step = judged(wrong)
         assert step is None
         assert verdict.severity is Severity.STOP
