@@ -1,0 +1,166 @@
+"""A residual policy: a small network together with the processing of its inputs and outputs.
+
+It is computed by numpy alone, so that a cell that runs it needs no training library.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from controllers.messages import Observation
+from drivers.contract.messages import Vector3
+from learning.policy.inputs import OUTPUT_UNITS, READINGS, Input, Output
+from simulator.checks import FloatArray, non_negative, positive
+
+Float32Array = npt.NDArray[np.float32]
+
+SMALLEST_SCALE, LARGEST_SCALE = 1e-12, 1e12
+"""Between them a scale can be divided by without loss."""
+
+
+class Layer(NamedTuple):
+    """One linear layer."""
+
+    weight: Float32Array
+    """(outputs, inputs)."""
+    bias: Float32Array
+    """(outputs,)."""
+
+
+class Expert(NamedTuple):
+    """The expert (eq. 6) that a policy corrects, and the box that the sum of both is cut to.
+
+    With gain and axial step 0 there is none: the policy's answer is the whole step.
+    """
+
+    gain_m_N: float
+    """Lateral step per radial force, against it."""
+    axial_step_m: float
+    step_box_m: Vector3
+    """Longest step along each axis, to either side."""
+
+
+@dataclass(frozen=True, eq=False)
+class Policy:
+    """Answers inputs in SI units with a residual in SI units.
+
+    The network sees each input divided by its scale and cut to `bound`, has ReLU between its layers
+    and tanh at its end, which is multiplied by the output's scale. Raises `ValueError`, naming what
+    is wrong, for names, scales, shapes or numbers that cannot be used.
+    """
+
+    inputs: tuple[Input, ...]
+    outputs: tuple[Output, ...]
+    bound: float
+    """Largest magnitude of a scaled input."""
+    layers: tuple[Layer, ...]
+    expert: Expert
+    _input_scale: FloatArray = field(init=False, repr=False)
+    _output_scale: FloatArray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        _check_channels("input", self.inputs, READINGS)
+        _check_channels("output", self.outputs, OUTPUT_UNITS)
+        positive("bound", self.bound)
+        _check_expert(self.expert)
+        object.__setattr__(self, "layers", tuple(_layers(self)))
+        object.__setattr__(self, "_input_scale", np.array([i.scale for i in self.inputs]))
+        object.__setattr__(self, "_output_scale", np.array([o.scale for o in self.outputs]))
+
+    def read(self, observation: Observation) -> list[float]:
+        """Return the inputs of an observation in SI units."""
+        return [READINGS[name].read(observation) for name, _ in self.inputs]
+
+    def residual(self, values: Sequence[float] | FloatArray) -> FloatArray:
+        """Return the residual (n_outputs,) in SI units for one set of inputs (n_inputs,).
+
+        An input that is NaN makes the whole residual NaN. Raises `ValueError` for another shape.
+        """
+        given = np.asarray(values, dtype=np.float64)
+        if given.shape != self._input_scale.shape:
+            raise ValueError(f"inputs have shape {given.shape}; it must be ({len(self.inputs)},)")
+        return self._answer(given)
+
+    def residuals(self, values: npt.ArrayLike) -> FloatArray:
+        """Return the residuals (n, n_outputs) in SI units for n sets of inputs (n, n_inputs).
+
+        Each row is that of `residual` to rounding. Raises `ValueError` for another shape.
+        """
+        given = np.asarray(values, dtype=np.float64)
+        if given.ndim != 2 or given.shape[1] != len(self.inputs):
+            raise ValueError(f"inputs have shape {given.shape}; it must be (n, {len(self.inputs)})")
+        return self._answer(given)
+
+    def _answer(self, values: FloatArray) -> FloatArray:
+        scaled = values / self._input_scale
+        signal = np.minimum(np.maximum(scaled, -self.bound), self.bound).astype(np.float32)
+        *hidden, (weight, bias) = self.layers
+        for inner_weight, inner_bias in hidden:
+            signal = np.maximum(signal @ inner_weight.T + inner_bias, np.float32(0.0))
+        residual: FloatArray = np.tanh(signal @ weight.T + bias) * self._output_scale
+        return residual
+
+
+def _check_channels(kind: str, channels: Sequence[Input | Output], valid: Iterable[str]) -> None:
+    names = [channel.name for channel in channels]
+    if not names:
+        raise ValueError(f"there is no {kind}; there must be at least one")
+    for name, scale in channels:
+        if name not in valid:
+            raise ValueError(f"{kind} {name!r} is not known; valid are {', '.join(valid)}")
+        if names.count(name) > 1:
+            raise ValueError(f"{kind} {name!r} is there {names.count(name)} times; it must be once")
+        if not SMALLEST_SCALE <= scale <= LARGEST_SCALE:
+            raise ValueError(
+                f"scale of {kind} {name!r} is {scale!r}; "
+                f"it must be at least {SMALLEST_SCALE:g} and at most {LARGEST_SCALE:g}"
+            )
+
+
+def _check_expert(expert: Expert) -> None:
+    for axis, length in zip("xyz", expert.step_box_m, strict=True):
+        positive(f"step_box_m ({axis}) of the expert", length)
+    non_negative("gain_m_N of the expert", expert.gain_m_N)
+    longest = expert.step_box_m[2]
+    if not 0.0 <= expert.axial_step_m <= longest:
+        raise ValueError(
+            f"axial_step_m of the expert is {expert.axial_step_m!r}; "
+            f"it must be at least 0 and at most {longest!r}, the step box along z"
+        )
+
+
+def _layers(policy: Policy) -> Iterable[Layer]:
+    """Yield the layers as read-only copies in single precision."""
+    if not policy.layers:
+        raise ValueError("there is no layer; there must be at least one")
+    width = len(policy.inputs)
+    for number, (given_weight, given_bias) in enumerate(policy.layers):
+        with np.errstate(over="ignore"):
+            weight = np.array(given_weight, dtype=np.float32, order="C")
+            bias = np.array(given_bias, dtype=np.float32, order="C")
+        if weight.ndim != 2 or weight.shape[1] != width or weight.shape[0] == 0:
+            raise ValueError(
+                f"weight of layer {number} has shape {weight.shape}; it must be (outputs, {width})"
+            )
+        width = weight.shape[0]
+        if bias.shape != (width,):
+            raise ValueError(
+                f"bias of layer {number} has shape {bias.shape}; it must be ({width},)"
+            )
+        for name, array in (("weight", weight), ("bias", bias)):
+            if not np.isfinite(array).all():
+                count = np.count_nonzero(~np.isfinite(array))
+                raise ValueError(
+                    f"{name} of layer {number} has {count} values that are not finite in single "
+                    "precision; all must be"
+                )
+            array.setflags(write=False)
+        yield Layer(weight, bias)
+    if width != len(policy.outputs):
+        raise ValueError(
+            f"the last layer has {width} outputs; it must have {len(policy.outputs)}, "
+            "one for each output of the policy"
+        )
