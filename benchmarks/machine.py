@@ -22,5 +22,5 @@ def describe() -> str:
     return (
         f"machine: {cpu}, {cores()} cores, {platform.system()} {platform.release()}\n"
         f"python {platform.python_version()}, numpy {version('numpy')}\n"
-        f"command: python {' '.join(sys.argv)}"
+        f"command: python {' '.join(sys.orig_argv[1:])}"
     )
