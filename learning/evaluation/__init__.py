@@ -1,0 +1,1 @@
+"""Controllers compared on plants: insertions in simulation and what they are measured by."""
