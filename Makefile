@@ -8,9 +8,9 @@ export OPENBLAS_NUM_THREADS := 1
 
 .PHONY: run test quick check fuzz bench mutation figures clean
 
-run: $(READY)  ## insert 30 parts on the mock cell; log and report go to runs/
+run: $(READY)  ## insert 30 parts on the mock cell with the trained skill; log and report go to runs/
 	$(BIN)/python hil/run_cell.py --config config/mock_cell.yaml --insertions 30 \
-		--controller expert --seed 1 --log $(LOG)
+		--controller skill --seed 1 --log $(LOG)
 
 test: check  ## all checks and all tests
 	$(BIN)/python -m pytest -n 2
@@ -33,6 +33,7 @@ bench: $(READY)  ## speed, measured side by side on this machine
 	$(BIN)/python benchmarks/simulated_time.py
 	$(BIN)/python benchmarks/real_time.py
 	$(BIN)/python benchmarks/environment.py
+	$(BIN)/python benchmarks/policy.py
 
 mutation: $(READY)  ## break supervisor and gate on purpose, and see the tests notice
 	$(BIN)/python tests/mutation.py

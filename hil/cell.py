@@ -17,15 +17,15 @@ from controllers.force_filter import ForceFilter
 from controllers.gate import Gate
 from controllers.insertion import InsertionSkill
 from controllers.messages import ResetRecord, Severity, SkillPhase, Tick
-from controllers.proportional import ProportionalController
 from drivers.backends import DeviceClass, device_class
 from drivers.contract.clock import Clock
-from drivers.contract.errors import ConfigurationError, DeviceTimeoutError, SafetyError
+from drivers.contract.errors import DeviceTimeoutError, SafetyError
 from drivers.contract.interfaces import Arm, Device, ForceSensor, Gripper, Stage
 from drivers.contract.messages import Pose
 from drivers.mock_world import MockWorld, WorldSettings
 from hil.config import CellConfig, DeviceConfig
 from hil.config.load import DeviceSettings
+from hil.controller_factory import controller_factory
 
 _VACUUM_TIMEOUT_S = 2.0
 _ARM_TIMEOUT_S = 30.0
@@ -59,17 +59,14 @@ class Cell:
     ) -> None:
         """Build the cell.
 
-        Raises ConfigurationError for a controller that the configuration does not name or a backend
-        that cannot be imported.
+        Raises ConfigurationError for a controller that the configuration does not name, one whose
+        policy does not fit the limits, or a backend that cannot be imported.
         """
-        if controller not in config.controllers:
-            valid = ", ".join(sorted(config.controllers))
-            raise ConfigurationError(f"controller {controller!r} is not valid: one of {valid} is")
         self._config = config
         self._controller_name = controller
         self._hold_pose = Pose(config.arm_poses.hold_m)
         self._tray_pose = Pose(config.arm_poses.tray_m)
-        start = Pose((0.0, 0.0, config.skill.start_depth_m))
+        self._start = Pose((0.0, 0.0, config.skill.start_depth_m))
         self.world = MockWorld(
             WorldSettings(
                 config.part.simulated_shaft(),
@@ -77,7 +74,7 @@ class Cell:
                 config.part.contact_law(),
                 config.part.alignment.position_error_m,
                 config.part.alignment.tilt_error_rad,
-                start,
+                self._start,
                 self._tray_pose,
             ),
             generator,
@@ -87,6 +84,8 @@ class Cell:
         stage = cast(Stage, build(DeviceClass.STAGE, config.stage))
         arm = cast(Arm, build(DeviceClass.ARM, config.arm))
         gripper = cast(Gripper, build(DeviceClass.GRIPPER, config.gripper))
+        (chance,) = generator.spawn(1)
+        self._new_controller = controller_factory(config, controller, sensor.noise_std, chance)
         self._devices: tuple[Device, ...] = (sensor, stage, arm, gripper)
         self._closing = ExitStack()
         self._gate = Gate(config.limits, self._hold_pose, stage, arm, gripper)
@@ -121,11 +120,8 @@ class Cell:
         self._move_arm(self._hold_pose)
         self._loop.wait(_CALM_S)
         self._loop.tare(config.filter.tare_samples, config.limits.clear_depth_m)
-        controller = ProportionalController(
-            config.controllers[self._controller_name], config.part.insertion.axial_step_m
-        )
         skill = InsertionSkill(
-            config.skill, config.part.insertion, controller, config.limits.step_m
+            config.skill, config.part.insertion, self._new_controller(), config.limits.step_m
         )
         self._loop.insert(skill, number, self._controller_name)
         obstacle = self._latched() or self._put_away(skill.phase)
@@ -159,13 +155,13 @@ class Cell:
 
         Raises SafetyError for a stop that comes once the shaft is out.
         """
-        config, is_out = self._config, True
+        is_out = True
         if phase is SkillPhase.DONE:
             self._switch_valve(False)
-            is_out = self._loop.withdraw(config.skill.start_depth_m, config.limits.step_m[2])
+        if phase is SkillPhase.DONE or self._is_clear(self._loop.tick()):
+            is_out = self._loop.withdraw(self._start)
         tick = self._loop.wait(_CALM_S)
-        stage = tick.snapshot.stage
-        if not is_out or stage is None or stage.pose.position[2] > config.limits.clear_depth_m:
+        if not is_out or not self._is_clear(tick):
             reasons = "; ".join(str(reason) for reason in tick.verdict.reasons)
             return self._latched() or reasons or "the shaft was not withdrawn"
         self._move_arm(self._tray_pose)
@@ -174,6 +170,10 @@ class Cell:
         if self._gate.latched:
             raise SafetyError(self._latched())
         return ""
+
+    def _is_clear(self, tick: Tick) -> bool:
+        stage = tick.snapshot.stage
+        return stage is not None and stage.pose.position[2] <= self._config.limits.clear_depth_m
 
     def _switch_valve(self, is_open: bool) -> None:
         self._loop.wait(_CALM_S)

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     ForceEstimate,
     Observation,
@@ -105,6 +106,21 @@ def observation(data: bytes) -> Observation:
         wrench_std=_wrench(message.wrench_std),
         pose=Pose(_vector(message.position_m), _vector(message.rotation_rad)),
         displacement=_vector(message.displacement_m),
+        commanded=Pose(_vector(message.commanded_m), _vector(message.commanded_rad)),
+    )
+
+
+def belief(data: bytes) -> ContactBelief:
+    """Return what a controller believed."""
+    message = ros.decode(data, ros.Belief)
+    return ContactBelief(
+        stamp_ns=_stamp_ns(message.header),
+        mean=tuple(message.mean.tolist()),
+        covariance=tuple(message.covariance.tolist()),
+        state=message.state,
+        state_probability=message.state_probability,
+        misfit=message.misfit,
+        restarts=message.restarts,
     )
 
 
@@ -117,6 +133,7 @@ def proposal(data: bytes) -> Proposal:
         source=message.source,
         translation=_vector(message.translation_m),
         rotation=_vector(message.rotation_rad),
+        expected_force=_vector(message.expected_force),
     )
 
 
@@ -173,6 +190,7 @@ def contact_state(data: bytes) -> ContactTruth:
         contacts=message.contacts,
         depth_m=message.depth_m,
         wrench=_wrench(message.wrench),
+        shaft=Pose(_vector(message.position_m), _vector(message.rotation_rad)),
     )
 
 

@@ -13,7 +13,7 @@ from hil import ros_types as ros
 
 FORMAT_RECORD = "tenon_log"
 """Name of the metadata record that says which format a log has."""
-FORMAT_VERSION = "1"
+FORMAT_VERSION = "2"
 ENDING_RECORD = "ending"
 """Name of the metadata record that says why a run ended before its time."""
 
@@ -34,6 +34,7 @@ class Topic(StrEnum):
     STAGE_TWIST = "/stage/twist"
     ARM_POSE = "/arm/pose"
     OBSERVATION = "/skill/observation"
+    BELIEF = "/skill/belief"
     PROPOSAL = "/skill/proposal"
     PHASE = "/skill/phase"
     VERDICT = "/safety/verdict"
@@ -53,6 +54,7 @@ MESSAGE_TYPES: Mapping[Topic, type[ros.RosMessage]] = MappingProxyType(
         Topic.STAGE_TWIST: ros.TwistStamped,
         Topic.ARM_POSE: ros.PoseStamped,
         Topic.OBSERVATION: ros.Observation,
+        Topic.BELIEF: ros.Belief,
         Topic.PROPOSAL: ros.Proposal,
         Topic.PHASE: ros.PhaseChange,
         Topic.VERDICT: ros.Verdict,

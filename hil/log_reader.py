@@ -16,6 +16,7 @@ from rosbags.serde import SerdeError
 from zstandard import ZstdError
 
 from controllers.messages import (
+    ContactBelief,
     ForceEstimate,
     Observation,
     PhaseChange,
@@ -124,6 +125,7 @@ class Log:
     arm_pose: PoseTrack
     estimates: tuple[ForceEstimate, ...]
     observations: tuple[Observation, ...]
+    beliefs: tuple[ContactBelief, ...]
     proposals: tuple[Proposal, ...]
     phases: tuple[PhaseChange, ...]
     verdicts: tuple[Verdict, ...]
@@ -223,6 +225,8 @@ def _read(path: Path, stream: BinaryIO) -> _Contents:
     try:
         for record in records:
             if isinstance(record, Metadata):
+                if record.name == FORMAT_RECORD:
+                    _check_version(path, record.metadata.get("version"))
                 contents.metadata[record.name] = record.metadata
             elif isinstance(record, Schema):
                 schemas[record.id] = record
@@ -261,13 +265,14 @@ def _topic(path: Path, channel: Channel, schema: Schema | None) -> Topic | None:
 
 
 def _check_format(path: Path, contents: _Contents) -> None:
-    record = contents.metadata.pop(FORMAT_RECORD, None)
-    if record is None:
+    if contents.metadata.pop(FORMAT_RECORD, None) is None:
         raise LogError(
             f"{path} is not a log of this project, or cut off in its first bytes: "
             f"it has no record {FORMAT_RECORD!r}"
         )
-    version = record.get("version")
+
+
+def _check_version(path: Path, version: str | None) -> None:
     if version != FORMAT_VERSION:
         raise LogError(f"{path} has log format {version}; this program reads {FORMAT_VERSION}")
 
@@ -304,6 +309,7 @@ def _decoded(path: Path, contents: _Contents) -> Log:
         arm_pose=_pose_track(values(Topic.ARM_POSE, decoding.pose_stamped)),
         estimates=values(Topic.FORCE_ESTIMATE, decoding.force_estimate),
         observations=values(Topic.OBSERVATION, decoding.observation),
+        beliefs=values(Topic.BELIEF, decoding.belief),
         proposals=values(Topic.PROPOSAL, decoding.proposal),
         phases=values(Topic.PHASE, decoding.phase_change),
         verdicts=values(Topic.VERDICT, decoding.verdict),

@@ -8,6 +8,7 @@ from statistics import fmean, median
 
 from controllers.control_loop import Subscriber
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     Observation,
     PhaseChange,
@@ -117,6 +118,10 @@ class Recorder(Subscriber):
             self._write(Topic.LOOP_TIMING, ros_messages.loop_timing(timing), timing.stamp_ns)
         self._ticks += 1
         self._log.keep_pace(tick.end_ns)
+
+    def on_belief(self, belief: ContactBelief) -> None:
+        """Record what a controller believes."""
+        self._write(Topic.BELIEF, ros_messages.belief(belief), belief.stamp_ns)
 
     def on_proposal(self, observation: Observation, proposal: Proposal) -> None:
         """Record what a controller knew and what it proposes."""

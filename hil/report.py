@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
@@ -72,6 +73,8 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
         state_colours=figures.STATE_COLOURS if log.contact_states else {},
         failure=_failure(log, summary),
         insertion=_insertion(log, summary),
+        belief=_belief(log, summary),
+        calibration=_calibration(log),
         histogram=figures.histogram_figure(log, summary.forces) if summary.forces else "",
         envelope=_envelope(runs),
         governor=figures.governor_figure(log, summary),
@@ -164,6 +167,25 @@ def _insertion(log: Log, summary: RunSummary) -> str:
         for what, i in chosen.items()
     ]
     return figures.insertion_figure(log, summary.facts, [i.number for i in chosen.values()], titles)
+
+
+def _belief(log: Log, summary: RunSummary) -> str:
+    """Return the figure of the insertion with the largest radial peak, if there were beliefs."""
+    known = [i for i in summary.insertions if figures.beliefs_of(log, i.number)]
+    if not known:
+        return ""
+    return figures.belief_figure(log, summary.facts, max(known, key=_radial_peak).number)
+
+
+def _calibration(log: Log) -> str:
+    """Say how often the truth was within two standard deviations; empty where it is not known."""
+    errors = figures.true_pose_errors(log, list(log.beliefs))
+    if not log.beliefs or np.isnan(errors).all():
+        return ""
+    mean, std = (np.array([getattr(b, name)[:4] for b in log.beliefs]) for name in ("mean", "std"))
+    known = np.isfinite(errors)
+    inside = np.abs(errors - mean)[known] <= figures.SIGMAS * std[known]
+    return f"{100.0 * float(np.mean(inside)):.0f} %"
 
 
 def _radial_peak(insertion: InsertionSummary) -> float:

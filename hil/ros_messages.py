@@ -9,7 +9,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntFlag
 
+import numpy as np
+
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     ForceEstimate,
     Observation,
@@ -47,6 +50,8 @@ class ContactTruth:
     depth_m: float
     wrench: Wrench
     """[N, N*m], about the origin of frame M, without noise and bias."""
+    shaft: Pose
+    """In frame M; position of the leading end's centre."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +153,22 @@ def observation(value: Observation) -> ros.Observation:
         position_m=_vector(value.pose.position),
         rotation_rad=_vector(value.pose.rotation),
         displacement_m=_vector(value.displacement),
+        commanded_m=_vector(value.commanded.position),
+        commanded_rad=_vector(value.commanded.rotation),
+    )
+
+
+def belief(value: ContactBelief) -> ros.Belief:
+    """Return what a controller believes."""
+    return ros.Belief(
+        header=_header(value.stamp_ns, PART),
+        mean=np.array(value.mean),
+        deviation=np.array(value.std),
+        covariance=np.array(value.covariance),
+        state=value.state,
+        state_probability=value.state_probability,
+        misfit=value.misfit,
+        restarts=value.restarts,
     )
 
 
@@ -159,6 +180,7 @@ def proposal(value: Proposal) -> ros.Proposal:
         source=value.source,
         translation_m=_vector(value.translation),
         rotation_rad=_vector(value.rotation),
+        expected_force=_vector(value.expected_force),
     )
 
 
@@ -215,6 +237,8 @@ def contact_state(truth: ContactTruth) -> ros.ContactState:
         contacts=truth.contacts,
         depth_m=truth.depth_m,
         wrench=_wrench(truth.wrench),
+        position_m=_vector(truth.shaft.position),
+        rotation_rad=_vector(truth.shaft.rotation),
     )
 
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import ClassVar, Generic, Protocol, TypeVar, cast
 
+import numpy as np
+from numpy.typing import NDArray
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 from rosbags.typesys.stores import ros2_humble as humble
@@ -54,6 +56,23 @@ class Observation:
     position_m: Vector3
     rotation_rad: Vector3
     displacement_m: Vector3
+    commanded_m: Vector3
+    commanded_rad: Vector3
+
+
+@dataclass
+class Belief:
+    """What a controller believes of the hidden pose and of the part."""
+
+    __msgtype__: ClassVar[str] = "tenon_msgs/msg/Belief"
+    header: Header
+    mean: NDArray[np.float64]
+    deviation: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    state: str
+    state_probability: float
+    misfit: float
+    restarts: int
 
 
 @dataclass
@@ -66,6 +85,7 @@ class Proposal:
     source: str
     translation_m: Vector3
     rotation_rad: Vector3
+    expected_force: Vector3
 
 
 @dataclass
@@ -131,6 +151,8 @@ class ContactState:
     contacts: int
     depth_m: float
     wrench: Wrench
+    position_m: Vector3
+    rotation_rad: Vector3
 
 
 @dataclass

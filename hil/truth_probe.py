@@ -26,5 +26,6 @@ class TruthProbe(Subscriber):
                     truth.contacts,
                     truth.depth_m,
                     truth.wrench,
+                    truth.shaft,
                 )
             )

@@ -1,11 +1,11 @@
 """The settings of a cell: which files, which devices, and how they are used."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Le, MaxLen, MinLen
 from pydantic import ConfigDict, Field
 
-from controllers.settings import FilterSettings, ProportionalSettings, SkillSettings
+from controllers.settings import FilterSettings, SkillSettings
 from drivers.contract.settings import MICRO, Settings
 
 _Name = Annotated[str, MinLen(1), MaxLen(80)]
@@ -20,6 +20,22 @@ class BackendChoice(Settings):
     model_config = ConfigDict(extra="allow")
 
     backend: str
+
+
+class ControllerChoice(Settings):
+    """A controller: its kind; the other keys are the kind's own."""
+
+    model_config = ConfigDict(extra="allow")
+
+    kind: Literal["proportional", "skill", "look_ahead"]
+
+
+class PolicySettings(Settings):
+    """A trained policy on top of the expert that it was trained with."""
+
+    kind: Literal["skill"]
+    policy: _FileName
+    """File of the policy, relative to the cell's."""
 
 
 class ArmPoses(Settings):
@@ -45,4 +61,4 @@ class CellSettings(Settings):
     arm_poses: ArmPoses
     filter: FilterSettings
     skill: SkillSettings
-    controllers: Annotated[dict[_Name, ProportionalSettings], MinLen(1)]
+    controllers: Annotated[dict[_Name, ControllerChoice], MinLen(1)]

@@ -11,7 +11,7 @@ from drivers.contract.device_settings import (
 )
 from drivers.contract.settings import written
 from hil.config.cell import CellSettings
-from hil.config.part import ContactSettings, PartSettings
+from learning.part import ContactSettings, PartSettings
 
 
 def part_problems(limits: Limits, part: PartSettings) -> Iterator[str]:

@@ -6,7 +6,12 @@ from pathlib import Path
 from typing import Generic, TypeVar, cast
 
 from controllers.limits import Limits, PartLimits, tighten
-from controllers.settings import FilterSettings, ProportionalSettings, SkillSettings
+from controllers.settings import (
+    FilterSettings,
+    LookAheadControllerSettings,
+    ProportionalSettings,
+    SkillSettings,
+)
 from drivers.backends import DeviceClass, settings_class
 from drivers.contract.configuration.problems import Problems
 from drivers.contract.configuration.yaml_loader import SourceFile, read_yaml
@@ -15,9 +20,9 @@ from drivers.contract.device_settings import (
     StageSettings,
     TelemetrySettings,
 )
-from drivers.contract.errors import ConfigurationError
+from drivers.contract.errors import ConfigurationError, PolicyError
 from drivers.contract.settings import Settings
-from hil.config.cell import ArmPoses, CellSettings
+from hil.config.cell import ArmPoses, CellSettings, PolicySettings
 from hil.config.checks import (
     cell_problems,
     part_problems,
@@ -25,7 +30,8 @@ from hil.config.checks import (
     stage_problems,
     workspace_problems,
 )
-from hil.config.part import PartSettings
+from learning.part import PartSettings
+from learning.policy.file import StoredPolicy, read_policy
 
 DeviceSettings = TypeVar("DeviceSettings", bound=Settings)
 
@@ -36,6 +42,19 @@ class DeviceConfig(Generic[DeviceSettings]):
 
     backend: str
     settings: DeviceSettings
+
+
+@dataclass(frozen=True, slots=True)
+class PolicyConfig:
+    """A controller that runs a trained policy."""
+
+    written: str
+    """The file's name as the cell states it."""
+    path: Path
+    stored: StoredPolicy
+
+
+ControllerConfig = ProportionalSettings | LookAheadControllerSettings | PolicyConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +71,7 @@ class CellConfig:
     arm_poses: ArmPoses
     filter: FilterSettings
     skill: SkillSettings
-    controllers: Mapping[str, ProportionalSettings]
+    controllers: Mapping[str, ControllerConfig]
     sources: tuple[SourceFile, SourceFile, SourceFile]
     """The files of cell, limits and part as they were read."""
 
@@ -71,7 +90,8 @@ def load_cell(path: Path, part_override: Path | None = None) -> CellConfig:
     stage = _device(problems, path, values, DeviceClass.STAGE, StageSettings)
     arm = _device(problems, path, values, DeviceClass.ARM, TelemetrySettings)
     gripper = _device(problems, path, values, DeviceClass.GRIPPER, TelemetrySettings)
-    if not (cell and sensor and stage and arm and gripper):
+    controllers = _controllers(problems, path, values)
+    if not (cell and sensor and stage and arm and gripper) or problems:
         raise problems.error()
 
     limits_path = path.parent / cell.limits
@@ -106,7 +126,7 @@ def load_cell(path: Path, part_override: Path | None = None) -> CellConfig:
         arm_poses=cell.arm_poses,
         filter=cell.filter,
         skill=cell.skill,
-        controllers=cell.controllers,
+        controllers=controllers,
         sources=(cell_source, limits_source, part_source),
     )
 
@@ -134,6 +154,44 @@ def _device(
     own = {key: value for key, value in group.items() if key != "backend"}
     settings = problems.validated(model, own, path, device)
     return None if settings is None else DeviceConfig(backend, settings)
+
+
+def _controllers(
+    problems: Problems, path: Path, values: Mapping[str, object]
+) -> Mapping[str, ControllerConfig]:
+    """Return the controllers of a cell's file, without those that it notes a problem of.
+
+    One that is no group or has no valid kind is noted with the rest of the file.
+    """
+    groups = values.get("controllers")
+    controllers: dict[str, ControllerConfig] = {}
+    for name, group in groups.items() if isinstance(groups, Mapping) else ():
+        kind = group.get("kind") if isinstance(group, Mapping) else None
+        place = ("controllers", str(name))
+        if kind == "proportional":
+            proportional = problems.validated(ProportionalSettings, group, path, *place)
+            if proportional is not None:
+                controllers[name] = proportional
+        elif kind == "look_ahead":
+            look_ahead = problems.validated(LookAheadControllerSettings, group, path, *place)
+            if look_ahead is not None:
+                controllers[name] = look_ahead
+        elif kind == "skill":
+            skill = problems.validated(PolicySettings, group, path, *place)
+            policy = None if skill is None else _policy(problems, path, name, skill.policy)
+            if policy is not None:
+                controllers[name] = policy
+    return controllers
+
+
+def _policy(problems: Problems, path: Path, name: str, written: str) -> PolicyConfig | None:
+    """Return a policy that the cell at `path` names, or None after noting why not."""
+    file = path.parent / written
+    try:
+        return PolicyConfig(written, file, read_policy(file))
+    except PolicyError as error:
+        problems.add(path, f"controllers.{name}.policy = {written!r} is not valid: {error}")
+        return None
 
 
 def _tightened(problems: Problems, path: Path, machine: Limits, part: PartLimits) -> Limits:

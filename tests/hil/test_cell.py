@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from controllers.control_loop import Subscriber
 from controllers.messages import (
+    Move,
     Observation,
     PhaseChange,
     Proposal,
@@ -92,6 +93,55 @@ def test_the_expert_inserts_softly(part: str) -> None:
     assert max(watcher.severities) < Severity.STOP
 
 
+class Starts(Subscriber):
+    """Keeps where the stage is as each insertion begins."""
+
+    def __init__(self) -> None:
+        self.poses: list[Pose] = []
+        self._pose = Pose()
+
+    def on_tick(self, tick: Tick) -> None:
+        if tick.snapshot.stage is not None:
+            self._pose = tick.snapshot.stage.pose
+
+    def on_phase(self, change: PhaseChange) -> None:
+        if change.phase is SkillPhase.APPROACH:
+            self.poses.append(self._pose)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fails", [False, True])
+def test_each_insertion_begins_where_the_first_one_did(
+    fails: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A controller that goes sideways and turns leaves nothing of it to the next part."""
+
+    def step(self: ProportionalController, observation: Observation) -> Move:
+        if observation.step >= 3:
+            return Move((0.0, 0.0, 60e-6))
+        return Move((0.7e-6, -1e-6, 60e-6), (3e-4, -6e-4, 0.0))
+
+    monkeypatch.setattr(ProportionalController, "step", step)
+    monkeypatch.setattr(
+        "drivers.mock_world.initial_poses", lambda *_: np.array([[-1e-6, 2e-6, 0.0, 0.0, 0.0]])
+    )
+
+    def change(config: CellConfig) -> CellConfig:
+        insertion = config.part.insertion.model_copy(update={"steps_max": 3 if fails else 1000})
+        return replace(config, part=config.part.model_copy(update={"insertion": insertion}))
+
+    cell, _, _ = make_cell(change=change)
+    starts = Starts()
+    cell.follow(starts)
+    outcomes = [cell.insert_part(number) for number in range(1, 4)]
+    assert all(outcome.is_clear for outcome in outcomes)
+    assert {o.phase for o in outcomes} == {SkillPhase.FAILED if fails else SkillPhase.DONE}
+    assert len(starts.poses) == 3
+    for pose in starts.poses:
+        assert pose.position == pytest.approx((0.0, 0.0, -300e-6), abs=0.2e-6)
+        assert pose.rotation == pytest.approx((0.0, 0.0, 0.0), abs=1e-5)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_the_conventional_controller_oscillates_and_is_stopped_at_the_limit(seed: int) -> None:
@@ -127,7 +177,7 @@ def test_the_same_seed_gives_the_same_run_and_another_seed_another() -> None:
 
 def test_an_unknown_controller_is_refused() -> None:
     with pytest.raises(
-        ConfigurationError, match="controller 'ddpg' is not valid: one of expert, p"
+        ConfigurationError, match="controller 'ddpg' is not valid: one of expert, look_ahead, p"
     ):
         make_cell("ddpg")
 
@@ -251,7 +301,7 @@ def test_a_device_that_fails_ends_the_run_and_the_cell_is_held(
 def test_a_controller_that_goes_mad_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     cell, _, _ = make_cell()
     monkeypatch.setattr(
-        ProportionalController, "step", lambda self, observation: (float("nan"), 0.0, 60e-6)
+        ProportionalController, "step", lambda self, observation: Move((float("nan"), 0.0, 60e-6))
     )
     outcome = cell.insert_part(1)
     assert outcome.phase is SkillPhase.FAILED
@@ -381,6 +431,7 @@ def test_slow_steps_take_their_time(
     tmp_path: Path, file: str, pattern: str, text: str, speed_m_s: float
 ) -> None:
     shutil.copytree(CONFIG, tmp_path / "config")
+    shutil.copytree(CONFIG.parent / "policies", tmp_path / "policies")
     path = tmp_path / "config" / file
     path.write_text(re.sub(pattern, text, path.read_text(), count=1))
     config = load_cell(tmp_path / "config" / "mock_cell.yaml")

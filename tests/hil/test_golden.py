@@ -1,4 +1,4 @@
-"""One insertion step by step, as it was when somebody last looked: it shows a change of behaviour.
+"""One insertion of each controller as it was when somebody last looked: it shows what changes.
 
 The sensor is quieter than the mock cell's, so that the tolerance means something. After a change
 that is meant: python -m tests.hil.test_golden, and say in the commit why it moved.
@@ -17,7 +17,7 @@ from drivers.contract.clock import ManualClock
 from hil.cell import Cell
 from hil.config import load_cell
 
-GOLDEN = Path(__file__).with_name("golden.json")
+GOLDEN = {name: Path(__file__).with_name(f"golden_{name}.json") for name in ("expert", "skill")}
 CONFIG = Path(__file__).parents[2] / "config"
 FORCE_TOLERANCE_MN = 0.5
 LENGTH_TOLERANCE_UM = 0.1
@@ -47,7 +47,7 @@ class Steps(Subscriber):
         )
 
 
-def insertion() -> list[Row]:
+def insertion(controller: str) -> list[Row]:
     config = load_cell(CONFIG / "mock_cell.yaml", CONFIG / "parts" / "paper_simulation.yaml")
     quiet = config.force_sensor.settings.model_copy(
         update={
@@ -58,7 +58,7 @@ def insertion() -> list[Row]:
         }
     )
     config = replace(config, force_sensor=replace(config.force_sensor, settings=quiet))
-    cell = Cell(config, "expert", ManualClock(), np.random.default_rng(1))
+    cell = Cell(config, controller, ManualClock(), np.random.default_rng(1))
     steps = Steps()
     cell.follow(steps)
     cell.connect()
@@ -67,8 +67,9 @@ def insertion() -> list[Row]:
 
 
 @pytest.mark.slow
-def test_the_insertion_is_as_it_was() -> None:
-    rows, golden = insertion(), json.loads(GOLDEN.read_text())
+@pytest.mark.parametrize("controller", sorted(GOLDEN))
+def test_the_insertion_is_as_it_was(controller: str) -> None:
+    rows, golden = insertion(controller), json.loads(GOLDEN[controller].read_text())
     assert len(rows) == len(golden)
     for row, before in zip(rows, golden, strict=True):
         assert row["force_mN"] == pytest.approx(before["force_mN"], abs=FORCE_TOLERANCE_MN)
@@ -77,5 +78,6 @@ def test_the_insertion_is_as_it_was() -> None:
 
 
 if __name__ == "__main__":
-    lines = ",\n".join(json.dumps(row) for row in insertion())
-    GOLDEN.write_text(f"[\n{lines}\n]\n")
+    for name, path in GOLDEN.items():
+        lines = ",\n".join(json.dumps(row) for row in insertion(name))
+        path.write_text(f"[\n{lines}\n]\n")

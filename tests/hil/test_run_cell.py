@@ -14,9 +14,15 @@ from tests.hil.command import MOCK, ROOT, run
 pytestmark = pytest.mark.slow
 
 
-def test_thirty_parts_are_inserted_within_the_papers_figures(tmp_path: Path) -> None:
+@pytest.mark.parametrize("controller", ["expert", "skill"])
+def test_thirty_parts_are_inserted_within_the_papers_figures(
+    tmp_path: Path, controller: str
+) -> None:
     log = tmp_path / "run.mcap"
-    code, out, err = run("--config", MOCK, "--insertions", "30", "--seed", "1", "--log", str(log))
+    code, out, err = run(
+        *("--config", MOCK, "--insertions", "30", "--controller", controller),
+        *("--seed", "1", "--log", str(log)),
+    )
     assert (code, err) == (0, "")
     assert "30 of 30 inserted (100.0 %" in out
     assert log.with_suffix(".html").read_text().startswith("<!DOCTYPE html>")
@@ -59,6 +65,7 @@ def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
 def patient_cell(folder: Path) -> Path:
     """The mock cell with limits on age that a busy machine can keep."""
     shutil.copytree(ROOT / "config", folder / "config")
+    shutil.copytree(ROOT / "policies", folder / "policies")
     limits = folder / "config" / "limits.yaml"
     text = limits.read_text()
     for key in ("sample_age", "device_age", "proposal_age", "heartbeat"):
@@ -67,11 +74,14 @@ def patient_cell(folder: Path) -> Path:
     return folder / "config" / "mock_cell.yaml"
 
 
-def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path) -> None:
+@pytest.mark.parametrize("controller", ["expert", "look_ahead"])
+def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path, controller: str) -> None:
     log = tmp_path / "run.mcap"
     config = str(patient_cell(tmp_path))
     begin = time.monotonic()
-    code, out, err = run("--config", config, "--log", str(log), "--real-time")
+    code, out, err = run(
+        *("--config", config, "--controller", controller, "--log", str(log), "--real-time")
+    )
     took_s = time.monotonic() - begin
     assert (code, err) == (0, ""), out
     stamps = read_log(log).raw_force.stamps_ns
@@ -83,7 +93,10 @@ def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (("--config", "config/nowhere.yaml"), "error: config/nowhere.yaml: cannot be read"),
-        (("--controller", "ddpg"), "error: controller 'ddpg' is not valid: one of expert, p is"),
+        (
+            ("--controller", "ddpg"),
+            "error: controller 'ddpg' is not valid: one of expert, look_ahead, p, skill is",
+        ),
         (("--part", "config/limits.yaml"), "error: config/limits.yaml: "),
         (("--log", "Makefile/r.mcap"), "error: cannot create the folder Makefile: File exists"),
         (("--log", "runs/a.html"), "error: the log runs/a.html is not valid: its name must end"),

@@ -97,9 +97,9 @@ def test_a_stop_while_the_last_part_is_withdrawn(
     def read_fault(sensor: MockForceSensor, timeout_s: float) -> ForceSample:
         return read(sensor, timeout_s)._replace(status=SensorStatus.FAULT)
 
-    def withdraw_with_fault(loop: ControlLoop, depth_m: float, longest_m: float) -> bool:
+    def withdraw_with_fault(loop: ControlLoop, start: Pose) -> bool:
         monkeypatch.setattr(MockForceSensor, "read", read_fault)
-        return withdraw(loop, depth_m, longest_m)
+        return withdraw(loop, start)
 
     monkeypatch.setattr(ControlLoop, "withdraw", withdraw_with_fault)
     assert run(log) == 1

@@ -1,9 +1,11 @@
 """The files of a cell as data that a test can spoil."""
 
 import copy
+import functools
 import json
 import math
 import re
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,9 @@ import yaml
 
 from drivers.contract.errors import ConfigurationError
 from hil.config import CellConfig, load_cell
+from learning.policy.file import save_policy
 from tests.hil.config.key_table import CELL, LIMITS, PART
+from tests.learning.policy.policies import zero_policy
 
 ROOT = Path(__file__).parents[3]
 PART_LIMITS = {
@@ -69,6 +73,7 @@ EFFECTS: dict[str, dict[str, Any]] = {
     },
 }
 """What a mock can do besides what the shipped cell lets it do."""
+POLICY = "policies/zero.safetensors"
 Files = dict[str, dict[str, Any]]
 
 _SHIPPED: Files = {
@@ -88,7 +93,17 @@ def shipped() -> Files:
     files[PART]["limits"] = copy.deepcopy(PART_LIMITS)
     for device, keys in EFFECTS.items():
         files[CELL][device].update(copy.deepcopy(keys))
+    files[CELL]["controllers"]["skill"] = {"kind": "skill", "policy": f"../{POLICY}"}
     return files
+
+
+@functools.cache
+def policy_file() -> bytes:
+    """What the file of a policy holds whose residual is zero."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "zero.safetensors"
+        save_policy(zero_policy(), path, {})
+        return path.read_bytes()
 
 
 def steps(path: str) -> list[str | int]:
@@ -120,7 +135,9 @@ def flow(value: object) -> str:
 
 
 def write(files: Files, folder: Path) -> None:
-    """Write the files below `folder`, each on one line."""
+    """Write the files below `folder`, each on one line, and the policy that they name."""
+    (folder / POLICY).parent.mkdir(parents=True, exist_ok=True)
+    (folder / POLICY).write_bytes(policy_file())
     for file, values in files.items():
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
         (folder / file).write_text(flow(values), encoding="utf-8")

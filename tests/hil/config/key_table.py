@@ -8,9 +8,12 @@ CELL = "config/mock_cell.yaml"
 
 NUMBER = "a number"
 WHOLE = "a whole number"
+TWO = "a list of 2 numbers"
 THREE = "a list of 3 numbers"
 SIX = "a list of 6 numbers"
-LISTS = (THREE, SIX)
+LISTS = (TWO, THREE, SIX)
+
+KINDS = "proportional or skill or look_ahead"
 
 
 class Key(NamedTuple):
@@ -331,7 +334,7 @@ KEYS = (
     Key(CELL, "skill.settle_time_ms", NUMBER, "at least 0 and at most 10000", -1, 1e5, "ms"),
     Key(CELL, "skill.hold_timeout_ms", NUMBER, "greater than 0 and at most 60000", 0, 1e5, "ms"),
     Key(CELL, "skill.contact_force_mN", NUMBER, "greater than 0 and at most 1000", 0, 1e4, "mN"),
-    Key(CELL, "controllers.expert.kind", "proportional"),
+    Key(CELL, "controllers.expert.kind", KINDS),
     Key(
         CELL,
         "controllers.expert.force_jacobian_um_N",
@@ -342,6 +345,88 @@ KEYS = (
         "um/N",
     ),
     Key(CELL, "controllers.expert.lambda", NUMBER, "greater than 0 and at most 1", 0, 1.1),
+    Key(CELL, "controllers.look_ahead.kind", KINDS),
+    Key(
+        CELL,
+        "controllers.look_ahead.stiffness_mN_um",
+        TWO,
+        "greater than 0 and at most 1000",
+        0,
+        1001,
+        "mN/um",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.clearance_um",
+        TWO,
+        "at least -1000 and at most 1000",
+        -1001,
+        1001,
+        "um",
+    ),
+    Key(CELL, "controllers.look_ahead.friction", TWO, "at least 0 and at most 2", -0.1, 2.1),
+    Key(
+        CELL,
+        "controllers.look_ahead.place_std_um",
+        NUMBER,
+        "at least 0 and at most 1000",
+        -1,
+        1001,
+        "um",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.report_std_um",
+        NUMBER,
+        "at least 0 and at most 1000",
+        -1,
+        1001,
+        "um",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.step_std_um",
+        NUMBER,
+        "at least 0 and at most 1000",
+        -1,
+        1001,
+        "um",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.model_error_percent",
+        NUMBER,
+        "at least 0 and at most 100",
+        -1,
+        101,
+        "%",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.axial_step_um",
+        TWO,
+        "greater than 0 and at most 1000",
+        0,
+        1001,
+        "um",
+    ),
+    Key(
+        CELL,
+        "controllers.look_ahead.force_budget_mN",
+        NUMBER,
+        "greater than 0 and at most 1000",
+        0,
+        1001,
+        "mN",
+    ),
+    Key(
+        CELL, "controllers.look_ahead.quantile", NUMBER, "greater than 0.5 and less than 1", 0.5, 1
+    ),
+    Key(CELL, "controllers.look_ahead.hypotheses", WHOLE, "at least 64 and at most 4096", 63, 4097),
+    Key(CELL, "controllers.look_ahead.moves", WHOLE, "at least 1 and at most 20", 0, 21),
+    Key(CELL, "controllers.look_ahead.samples", WHOLE, "at least 16 and at most 512", 15, 513),
+    Key(CELL, "controllers.skill.kind", KINDS),
+    Key(CELL, "controllers.skill.policy", "text", "of 1 to 1000 characters", "", "n" * 1001),
 )
 
 GROUPS = (
@@ -397,11 +482,9 @@ GROUPS = (
         "a group of keys: start_depth_um, settle_time_ms, hold_timeout_ms, contact_force_mN",
     ),
     Group(CELL, "controllers", "a mapping of names to groups of keys"),
-    Group(
-        CELL,
-        "controllers.expert",
-        "a group of keys: kind, force_jacobian_um_N, lambda",
-    ),
+    Group(CELL, "controllers.expert", "a group of keys: kind"),
+    Group(CELL, "controllers.look_ahead", "a group of keys: kind"),
+    Group(CELL, "controllers.skill", "a group of keys: kind"),
 )
 
 OPTIONAL = {
@@ -422,6 +505,10 @@ OPTIONAL = {
 """Keys that may be left out."""
 
 
+CHOSEN = ("controllers.expert", "controllers.look_ahead", "controllers.skill")
+"""One controller of each kind; their names are people's choice."""
+
+
 def is_named(row: Key | Group) -> bool:
     """Whether the key's name is given, not a place in a list or a name that people choose."""
-    return not row.path.endswith("]") and row.path != "controllers.expert"
+    return not row.path.endswith("]") and row.path not in CHOSEN

@@ -149,8 +149,11 @@ def test_not_finite(row: Key, value: float, shown: str, refuse: Refuse) -> None:
 
 
 @every([key for key in KEYS if key.kind in LISTS])
-@pytest.mark.parametrize("value", [[], [1, 1], [1, 1, 1, 1], [1, 1, 1, 1, 1, 1, 1]])
-def test_wrong_length(row: Key, value: list[int], refuse: Refuse) -> None:
+@pytest.mark.parametrize("length", [0, 1, 2, 3, 4, 7])
+def test_wrong_length(row: Key, length: int, refuse: Refuse) -> None:
+    value = [1] * length
+    if row.kind == f"a list of {length} numbers":
+        return
     assert refuse(spoiled(row.path, row.file, value)) == (
         f"{row.file}: {row.path} = {value} is not valid: must be {row.valid}"
     )
@@ -243,8 +246,8 @@ def test_misspelt(row: Key | Group, refuse: Refuse) -> None:
     group[f"{last[0]}{last}"] = group.pop(last)
     path = f"{row.path.removesuffix(last)}{last[0]}{last}"
     expected = f"{row.file}: {path} is not a key: did you mean {last}?"
-    if row.path.endswith(".backend"):
-        expected = f"{row.file}: {row.path} is missing: must be text"
+    if row.path.endswith((".backend", ".kind")):
+        expected = f"{row.file}: {row.path} is missing: must be {row.valid}"
     assert refuse(files) == expected
 
 

@@ -8,13 +8,14 @@ import pytest
 from pydantic import BaseModel
 
 from controllers.limits import Limits
+from controllers.settings import LookAheadControllerSettings, ProportionalSettings
 from drivers.arm.mock import MockArmSettings
 from drivers.backends import DeviceClass, settings_class
 from drivers.force_sensor.mock import MockForceSensorSettings
 from drivers.gripper.mock import MockGripperSettings
 from drivers.stage.mock import MockStageSettings
-from hil.config.cell import CellSettings
-from hil.config.part import PartSettings
+from hil.config.cell import CellSettings, PolicySettings
+from learning.part import PartSettings
 from tests.hil.config.cell_files import ROOT
 from tests.hil.config.key_table import CELL, GROUPS, KEYS, LIMITS, PART
 
@@ -23,6 +24,13 @@ DEVICES: dict[str, type[BaseModel]] = {
     "stage": MockStageSettings,
     "arm": MockArmSettings,
     "gripper": MockGripperSettings,
+}
+
+
+CONTROLLERS: dict[str, type[BaseModel]] = {
+    "controllers.expert": ProportionalSettings,
+    "controllers.look_ahead": LookAheadControllerSettings,
+    "controllers.skill": PolicySettings,
 }
 
 
@@ -43,8 +51,7 @@ def paths(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
             path += "[1]"
             yield path
         elif get_origin(field.annotation) is dict:
-            path += ".expert"
-            yield path
+            continue  # whose entries are of several kinds
         yield from paths(inner, f"{path}.")
 
 
@@ -54,6 +61,9 @@ def every_path() -> Iterator[tuple[str, str]]:
     yield from ((CELL, path) for path in paths(CellSettings))
     for device, model in DEVICES.items():
         yield from ((CELL, path) for path in paths(model, f"{device}."))
+    for controller, kind in CONTROLLERS.items():
+        yield CELL, controller
+        yield from ((CELL, path) for path in paths(kind, f"{controller}."))
 
 
 def test_every_key_has_a_row() -> None:
@@ -94,7 +104,10 @@ def test_the_reference_states_unit_and_range_of_every_key_and_no_other() -> None
     stated = {}
     for row in KEYS:
         *groups, key = re.findall(r"[a-z]\w*", row.path)
-        valid = row.range or {"kind": "proportional", "backend": "mock"}[key]
-        group = ".".join(name for name in groups if name != "expert")
+        valid = (
+            row.range or {"kind": "proportional` or `skill` or `look_ahead", "backend": "mock"}[key]
+        )
+        group = ".".join(name for name in groups if name not in ("expert", "look_ahead", "skill"))
+        group = "skill" if groups == ["skill"] else group
         stated[files[row.file], group, key] = (row.unit, valid)
     assert reference() == stated

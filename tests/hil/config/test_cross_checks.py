@@ -220,6 +220,22 @@ def test_cross_check(
         assert refuse(files) == f"{file}: {expected}"
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("stiffness_mN_um", [4, 3.9]),
+        ("clearance_um", [10, -10]),
+        ("friction", [0.2, 0.1]),
+        ("axial_step_um", [60, 5]),
+    ],
+)
+def test_a_pair_in_the_wrong_order(key: str, value: list[float], refuse: Refuse) -> None:
+    path = f"controllers.look_ahead.{key}"
+    assert refuse(changed((CELL, path, value))) == (
+        f"config/mock_cell.yaml: {path} = {value} is not valid: the lowest value must come first"
+    )
+
+
 def test_limits_that_the_stage_would_exceed(refuse: Refuse) -> None:
     files = changed((LIMITS, "speed_limit_mm_s", 4), (PART, "limits.speed_limit_mm_s", 3))
     assert refuse(files) == (

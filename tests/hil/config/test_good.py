@@ -8,7 +8,9 @@ import pytest
 from pydantic import ValidationError
 
 from controllers.governor import Travel, speed_cap
+from controllers.settings import LookAheadControllerSettings, ProportionalSettings
 from hil.config import CellConfig, load_cell
+from hil.config.load import PolicyConfig
 from simulator.contact import ContactLaw
 from simulator.geometry import Hole, Part, Shaft
 from tests.hil.config.cell_files import ROOT, Load, shipped
@@ -132,14 +134,62 @@ def test_use_of_the_devices(config: CellConfig) -> None:
         "hold_timeout_s": 0.5,
         "contact_force_N": 0.01,
     }
-    assert {name: c.model_dump() for name, c in config.controllers.items()} == {
-        name: {
+    for name, gain in (("expert", 0.2), ("p", 1.0)):
+        choice = config.controllers[name]
+        assert isinstance(choice, ProportionalSettings)
+        assert choice.model_dump() == {
             "kind": "proportional",
             "force_jacobian_m_N": 8e-4,
             "gain_factor": gain,
         }
-        for name, gain in (("expert", 0.2), ("p", 1.0))
+
+
+def test_the_look_ahead(config: CellConfig) -> None:
+    choice = config.controllers["look_ahead"]
+    assert isinstance(choice, LookAheadControllerSettings)
+    assert choice.model_dump() == {
+        "kind": "look_ahead",
+        "stiffness_N_m": (2e3, 12e3),
+        "clearance_m": (2e-6, 14e-6),
+        "friction": (0.1, 0.3),
+        "place_std_m": pytest.approx(2e-7, rel=1e-15),
+        "report_std_m": pytest.approx(1e-7, rel=1e-15),
+        "step_std_m": pytest.approx(1e-7, rel=1e-15),
+        "model_error": 0.02,
+        "axial_step_m": (2.5e-6, 6e-5),
+        "force_budget_N": 0.008,
+        "quantile": 0.9,
+        "hypotheses": 512,
+        "moves": 8,
+        "samples": 128,
     }
+
+
+@pytest.mark.parametrize(
+    ("pair_um", "steps_um"),
+    [
+        ([2.5, 60], [60, 30, 15, 7.5, 3.75, 2.5]),
+        ([5, 40], [40, 20, 10, 5]),
+        ([40, 60], [60, 40]),
+        ([60, 60], [60]),
+    ],
+)
+def test_the_longest_step_is_halved_down_to_the_shortest(
+    pair_um: list[float], steps_um: list[float], load: Load
+) -> None:
+    files = shipped()
+    files[CELL]["controllers"]["look_ahead"]["axial_step_um"] = pair_um
+    choice = load(files).controllers["look_ahead"]
+    assert isinstance(choice, LookAheadControllerSettings)
+    assert choice.axial_steps_m == pytest.approx([s * 1e-6 for s in steps_um], rel=1e-12)
+
+
+def test_a_policy_is_found_beside_the_cell(load: Load) -> None:
+    choice = load(shipped()).controllers["skill"]
+    assert isinstance(choice, PolicyConfig)
+    assert choice.path == Path("config/../policies/zero.safetensors")
+    assert choice.stored.sha256 == hashlib.sha256(choice.path.read_bytes()).hexdigest()
+    assert choice.stored.policy.expert.step_box_m == (2e-5, 2e-5, 6e-5)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     ForceEstimate,
     Observation,
@@ -78,7 +79,10 @@ def calls(seed: int, milliseconds: int) -> Iterator[Call]:
             snapshot = _snapshot(rng, now_ns, sample)
             yield Call(now_ns, lambda recorder, sample=sample: recorder.on_sample(sample))
         if "truth" in active:
-            truth = ContactTruth(now_ns, "b", "upper hole", ms // 40, ms * 1e-6, _wrench(rng))
+            shaft = Pose((1e-6, 0.0, ms * 1e-6), (0.001, 0.0, 0.0))
+            truth = ContactTruth(
+                now_ns, "b", "upper hole", ms // 40, ms * 1e-6, _wrench(rng), shaft
+            )
             yield Call(now_ns, lambda recorder, truth=truth: recorder.on_truth(truth))
         if "tick" in active:
             snapshot = snapshot._replace(now_ns=now_ns)
@@ -116,6 +120,7 @@ def rows(log: Log) -> dict[str, list[tuple[int, object]]]:
     for name in (
         "estimates",
         "observations",
+        "beliefs",
         "proposals",
         "phases",
         "verdicts",
@@ -168,12 +173,16 @@ def _tick(rng: random.Random, now_ns: int, snapshot: Snapshot) -> Tick:
 def _step(rng: random.Random, now_ns: int, number: int) -> Iterator[Call]:
     pose = Pose((0.0, 0.0, number * 1e-5))
     observation = Observation(
-        now_ns, number - 1, _wrench(rng), _wrench(rng), pose, (0.0, 0.0, number * 1e-5)
+        now_ns, number - 1, _wrench(rng), _wrench(rng), pose, (0.0, 0.0, number * 1e-5), pose
+    )
+    belief = ContactBelief(
+        now_ns, tuple(rng.random() for _ in range(7)), (0.5,) * 49, "free", 0.75, 6.0, number % 2
     )
     proposal = Proposal(now_ns, number, "expert", (1e-6, -2e-6, 5e-5))
     reasons = (Reason(Rule.GOVERNOR, Severity.REDUCE, "speed 5 mm/s over 2 mm/s"),)
     target = None if number % 5 == 0 else pose
     sent = Sent(now_ns + 5_000, number, Verdict(now_ns, reasons, 0.002), target, (0.0, 0.0, 5e-5))
+    yield Call(now_ns, lambda recorder: recorder.on_belief(belief))
     yield Call(now_ns, lambda recorder: recorder.on_proposal(observation, proposal))
     yield Call(now_ns + 5_000, lambda recorder: recorder.on_sent(sent))
 

@@ -31,6 +31,8 @@ def _python_type(field: FieldDesc) -> str:
         return str(detail).rpartition("/")[2]
     if kind == Nodetype.SEQUENCE:
         return f"list[{_python_type(detail[0])}]"
+    if kind == Nodetype.ARRAY:
+        return "ndarray"
     return PYTHON_NAMES[detail[0]]
 
 

@@ -138,6 +138,8 @@ INTERRUPTED_START = """
     from pathlib import Path
     from hil import log_process
 
+    # A test run in the background of a shell has SIGINT ignored, and so would this one.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     register = atexit.register
     def register_under_a_signal(*arguments):
         os.kill(os.getpid(), signal.SIGINT)

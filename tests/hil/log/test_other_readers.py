@@ -39,6 +39,7 @@ def _counts(log: Log) -> dict[str, int]:
         Topic.STAGE_TWIST: log.stage_twist.stamps_ns.size,
         Topic.ARM_POSE: log.arm_pose.stamps_ns.size,
         Topic.OBSERVATION: len(log.observations),
+        Topic.BELIEF: len(log.beliefs),
         Topic.PROPOSAL: len(log.proposals),
         Topic.PHASE: len(log.phases),
         Topic.VERDICT: len(log.verdicts),

@@ -138,7 +138,7 @@ def test_contact_truth_at_100_hz_and_on_change(path: Path) -> None:
     recorder = Recorder(LogFile(path, {}))
     for ms in range(40):
         contacts = 2 if ms in (13, 14) else 1
-        recorder.on_truth(ContactTruth(ms * MS, "b", "upper hole", contacts, 0.0, ZERO))
+        recorder.on_truth(ContactTruth(ms * MS, "b", "upper hole", contacts, 0.0, ZERO, Pose()))
     recorder.close()
     stamps_ms = [truth.stamp_ns // MS for truth in read_log(path).contact_states]
     assert stamps_ms == [0, 10, 13, 15, 20, 30]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from controllers.messages import (
+    ContactBelief,
     FilterHealth,
     ForceEstimate,
     Observation,
@@ -137,13 +138,30 @@ def test_stage_and_arm(
 
 @in_files
 @given(
-    observation=st.builds(Observation, stamps, counts, wrenches, wrenches, poses, vectors),
-    proposal=st.builds(Proposal, stamps, counts, texts, vectors, vectors),
+    observation=st.builds(Observation, stamps, counts, wrenches, wrenches, poses, vectors, poses),
+    proposal=st.builds(Proposal, stamps, counts, texts, vectors, vectors, vectors),
 )
 def test_observation_and_proposal(observation: Observation, proposal: Proposal) -> None:
     log = _tell("on_proposal", observation, proposal)
     assert log.observations == (observation,)
     assert log.proposals == (proposal,)
+
+
+@in_files
+@given(
+    belief=st.builds(
+        ContactBelief,
+        stamps,
+        st.tuples(*[numbers] * 7),
+        st.lists(st.floats(0.0), min_size=49, max_size=49).map(tuple),
+        texts,
+        numbers,
+        numbers,
+        counts,
+    )
+)
+def test_belief(belief: ContactBelief) -> None:
+    assert _tell("on_belief", belief).beliefs == (belief,)
 
 
 @in_files
@@ -171,7 +189,7 @@ def test_reset(record: ResetRecord) -> None:
 
 
 @in_files
-@given(truth=st.builds(ContactTruth, stamps, texts, texts, counts, numbers, wrenches))
+@given(truth=st.builds(ContactTruth, stamps, texts, texts, counts, numbers, wrenches, poses))
 def test_contact_truth(truth: ContactTruth) -> None:
     assert _tell("on_truth", truth).contact_states == (truth,)
 
