@@ -8,6 +8,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 from figures_of import (
+    belief,
     chamfer_map,
     contact_kinds,
     contact_states,
@@ -38,6 +39,7 @@ FIGURES: Mapping[str, Callable[[], str]] = MappingProxyType(
         "force-map": force_map.draw,
         "chamfer-map": chamfer_map.draw,
         "jamming": jamming.draw,
+        "belief": belief.draw,
     }
 )
 PICTURES: Mapping[str, Callable[[], npt.NDArray[np.uint8]]] = MappingProxyType(
