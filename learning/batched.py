@@ -50,6 +50,12 @@ class BatchedSettings(Settings):
                 f"insertions = {self.insertions} is not valid: must be at least "
                 f"ddpg.batch_size = {self.ddpg.batch_size}, to learn from the first step on"
             )
+        additions = self.ddpg.additions
+        if additions is not None and additions.return_steps > 1:
+            raise ValueError(
+                f"ddpg.additions.return_steps = {additions.return_steps} is not valid: must be 1, "
+                "as insertions at once keep single steps"
+            )
         return self
 
 

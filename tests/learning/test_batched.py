@@ -73,6 +73,20 @@ def test_too_few_insertions(tmp_path: Path) -> None:
         plan(tmp_path, insertions=7)
 
 
+def test_returns_of_several_steps(tmp_path: Path) -> None:
+    """Insertions side by side keep single steps, and must not pretend otherwise."""
+    additions = {
+        "twin_critics": False,
+        "critic_norm": "none",
+        "return_steps": 3,
+        "target_noise": 0.0,
+        "actor_period": 1,
+    }
+    ddpg = {**yaml.safe_load(SHIPPED.read_text())["ddpg"], "additions": additions}
+    with pytest.raises(ConfigurationError, match=r"return_steps = 3 is not valid: must be 1"):
+        plan(tmp_path, ddpg=ddpg)
+
+
 def test_the_shipped_file_has_the_papers_problem() -> None:
     settings = load_batched(SHIPPED).plan.settings
     assert settings.residual.range_m == (1e-6, 1e-6, 30e-6)
