@@ -24,6 +24,9 @@ from learning.task import InsertionTask, Start
 from tests.learning.policy.policies import EXPERT, zero_policy
 from tests.learning.training.plans import short_file, short_plan
 
+pytestmark = pytest.mark.slow
+"""Loading and stepping the library takes longer than the short loop should."""
+
 BESIDE = Formulation(PAPER, EXPERT, (2e-6, 3e-6, 30e-6), ends=False)
 WHOLE_STEP = Expert(0.0, 0.0, PAPER.step_box_m)
 
@@ -196,7 +199,6 @@ def test_table_of_times() -> None:
     }
 
 
-@pytest.mark.slow
 def test_the_whole_comparison(tmp_path: Path) -> None:
     out = tmp_path / "out"
     config = short_file(tmp_path, rounds=2)
