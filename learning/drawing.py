@@ -59,3 +59,8 @@ def svg(figure: Figure, name: str, description: str) -> str:
     text = text[text.index("<svg ") :]
     text = re.sub(r'( id="| xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
     return text.replace("<svg ", f'<svg role="img" aria-label="{description}" ', 1)
+
+
+def alone(drawn: str) -> str:
+    """Return an SVG element as a file of its own."""
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{drawn}'

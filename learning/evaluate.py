@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.text import Text
 
-from drivers.contract.errors import ConfigurationError, TenonError
+from drivers.contract.errors import TenonError
+from learning.command import make_folder, refused, write_text
 from learning.evaluation.comparison import Comparison, compare
 from learning.evaluation.load import Evaluation, load_evaluation
 from learning.evaluation.page import PAGE, pages
@@ -16,9 +16,6 @@ from learning.evaluation.progress import shown_progress
 from learning.evaluation.table import insertions_csv, results_csv, terminal_table
 from learning.evaluation.training_log import read_training_log
 from learning.evaluation.trials import workers
-
-_UNUSABLE = 2
-"""Exit code for input that cannot be used, as of `hil/run_cell.py`."""
 
 
 def evaluate(
@@ -48,16 +45,14 @@ def evaluate(
     try:
         evaluation = load_evaluation(config, plants, seed)
         logs = [read_training_log(folder) for folder in training or []]
-        _make(out)
+        make_folder(out)
         comparison = _run(evaluation, processes or len(os.sched_getaffinity(0)))
-        _write(out / "results.csv", results_csv(comparison))
-        _write(out / "insertions.csv", insertions_csv(comparison))
+        write_text(out / "results.csv", results_csv(comparison))
+        write_text(out / "insertions.csv", insertions_csv(comparison))
         for name, content in pages(comparison, logs).items():
-            _write(out / name, content)
+            write_text(out / name, content)
     except TenonError as error:
-        text = Text.assemble(("error:", "red"), f" {error}")
-        Console(stderr=True).print(text, soft_wrap=True, highlight=False)
-        raise typer.Exit(_UNUSABLE) from error
+        raise refused(error) from error
     console = Console()
     console.print(terminal_table(comparison))
     console.print(f"Tables and figures: {out / PAGE}", soft_wrap=True, highlight=False)
@@ -66,20 +61,6 @@ def evaluate(
 def _run(evaluation: Evaluation, processes: int) -> Comparison:
     with workers(processes) as team, shown_progress() as told:
         return compare(evaluation, team, told)
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ConfigurationError(f"cannot create the folder {folder}: {error.strerror}") from error
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ConfigurationError(f"cannot write {path}: {error.strerror}") from error
 
 
 if __name__ == "__main__":

@@ -4,18 +4,17 @@ import os
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 from rich.console import Console
-from rich.text import Text
 
 from drivers.contract.errors import TenonError
+from learning.command import make_folder, refused, write_text
+from learning.drawing import alone
+from learning.evaluation.figures.sweep import sweep_figure
 from learning.evaluation.progress import shown_progress
 from learning.evaluation.sweep import Point, Sweep, load_sweep, run_sweep
-from learning.evaluation.sweep_figure import draw_sweep
 from learning.evaluation.trials import workers
-
-_UNUSABLE = 2
-"""Exit code for input that cannot be used, as of `hil/run_cell.py`."""
 
 
 def generalise(
@@ -32,14 +31,13 @@ def generalise(
     """
     try:
         sweep = load_sweep(config)
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
         points = _run(sweep, processes or len(os.sched_getaffinity(0)))
-        (out / "sweep.csv").write_text(_csv(points), encoding="utf-8")
-        draw_sweep(sweep.pushes, points, sweep.settings.controllers).savefig(out / "sweep.svg")
-    except (TenonError, OSError) as error:
-        text = Text.assemble(("error:", "red"), f" {error}")
-        Console(stderr=True).print(text, soft_wrap=True, highlight=False)
-        raise typer.Exit(_UNUSABLE) from error
+        write_text(out / "sweep.csv", _csv(points))
+        figure = sweep_figure(sweep.pushes, points, sweep.settings.controllers)
+        write_text(out / "sweep.svg", alone(figure))
+    except TenonError as error:
+        raise refused(error) from error
     Console().print(f"Wrote {out / 'sweep.csv'} and {out / 'sweep.svg'}", highlight=False)
 
 
@@ -52,12 +50,12 @@ def _csv(points: list[Point]) -> str:
     head = "parameter,value,controller,insertions,success,success_low,success_high"
     lines = [f"{head},radial_mean_mN,radial_peak_p95_mN,steps_mean"]
     for p in points:
-        peaks = sorted(p.figures.values["radial_peak"])
+        peaks = p.figures.values["radial_peak"]
         lines.append(
             f"{p.push},{p.value:g},{p.controller},{len(peaks)},{p.success.value:.4f},"
             f"{p.success.low:.4f},{p.success.high:.4f},"
             f"{1e3 * p.figures.values['radial_mean'].mean():.3f},"
-            f"{1e3 * peaks[int(0.95 * (len(peaks) - 1))]:.2f},"
+            f"{1e3 * np.percentile(peaks, 95):.2f},"
             f"{p.figures.values['steps'].mean():.2f}"
         )
     return "\n".join(lines) + "\n"

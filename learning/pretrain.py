@@ -7,9 +7,9 @@ import torch
 import typer
 from pydantic import JsonValue
 from rich.console import Console
-from rich.text import Text
 
 from drivers.contract.errors import TenonError
+from learning.command import refused
 from learning.policy.file import save_policy
 from learning.training.checkpoint import configuration
 from learning.training.display import Display
@@ -18,9 +18,6 @@ from learning.training.plan import load_plan
 from learning.training.policy_of import policy_of
 from learning.training.run_folder import RunFolder
 from learning.training.trainer import Trainer
-
-_UNUSABLE = 2
-"""Exit code for input that cannot be used, as of `hil/run_cell.py`."""
 
 
 def pretrain(
@@ -43,9 +40,7 @@ def pretrain(
     try:
         _pretrain(config, out, seed)
     except TenonError as error:
-        text = Text.assemble(("error:", "red"), f" {error}")
-        Console(stderr=True).print(text, soft_wrap=True, highlight=False)
-        raise typer.Exit(_UNUSABLE) from error
+        raise refused(error) from error
 
 
 def _pretrain(config: Path, out: Path, seed: int) -> None:

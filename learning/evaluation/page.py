@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from learning.drawing import alone
 from learning.evaluation.comparison import Comparison
 from learning.evaluation.figures import (
     by_depth_figure,
@@ -51,12 +52,7 @@ def pages(comparison: Comparison, logs: Sequence[TrainingLog]) -> dict[str, str]
             trainings=len(logs),
         )
     )
-    return {PAGE: page, **{f"{name}.svg": _alone(svg) for name, svg in figures.items()}}
-
-
-def _alone(svg: str) -> str:
-    """Return a figure as a file of its own."""
-    return f'<?xml version="1.0" encoding="utf-8"?>\n{svg}'
+    return {PAGE: page, **{f"{name}.svg": alone(svg) for name, svg in figures.items()}}
 
 
 def _environment() -> Environment:

@@ -165,13 +165,6 @@ class Trial:
         return found.wrench.reshape(*poses.shape[:-1], 6)
 
 
-def run_trial(
-    plant: Plant, controller: Controller, rules: TrialRules, generator: np.random.Generator
-) -> Record:
-    """Insert until the stroke is reached or the steps run out."""
-    return insert(Trial(plant, rules, generator), controller)
-
-
 def insert(trial: Trial, controller: Controller) -> Record:
     """Lead a trial that has not begun to its end."""
     for _ in range(trial.rules.steps_max):

@@ -7,7 +7,7 @@ from controllers.belief_controller import BeliefController
 from controllers.contact_pose import ContactModel, ContactPoseFilter, Noise, Prior, StageNoise
 from controllers.contact_pose.look_ahead import LookAheadSettings
 from learning.evaluation.plant import Plant, drawn_plants, generators_of
-from learning.evaluation.trial import Record, TrialRules, run_trial
+from learning.evaluation.trial import Record, Trial, TrialRules, insert
 from simulator.checks import FloatArray
 from simulator.geometry import Hole, Part
 from tests.learning.evaluation.plants import extended
@@ -29,7 +29,7 @@ def inserted(
     model = ContactModel(drawing, plant.shaft, RULES.sensor_m)
     pose_filter = ContactPoseFilter(model, PRIOR, NOISE, STAGE, of_belief)
     controller = BeliefController(pose_filter, model, LOOK, of_belief)
-    record = run_trial(plant, controller, RULES, of_trial)
+    record = insert(Trial(plant, RULES, of_trial), controller)
     clearance_m = plant.part.holes[0].diameter_m - plant.shaft.diameter_m
     law = plant.law.stiffness_N_m, clearance_m, plant.law.friction
     truth = np.array([*plant.misalignment[:2], *plant.misalignment[3:], *law])

@@ -10,7 +10,7 @@ import pytest
 from controllers.insertion import Controller
 from controllers.messages import Move, Observation
 from learning.evaluation.plant import Plant
-from learning.evaluation.trial import Record, Trial, TrialRules, run_trial
+from learning.evaluation.trial import Record, Trial, TrialRules, insert
 from simulator.checks import FloatArray
 from simulator.contact import solve
 from simulator.effects.stage import StageEffects
@@ -40,7 +40,7 @@ class Steps(Controller):
 
 def tried(on: Plant, rule: Callable[[Observation], Move], seed: int = 1) -> tuple[Record, Steps]:
     steps = Steps(rule)
-    return run_trial(on, steps, RULES, np.random.default_rng(seed)), steps
+    return insert(Trial(on, RULES, np.random.default_rng(seed)), steps), steps
 
 
 def wandering(seed: int) -> Callable[[Observation], Move]:
@@ -118,7 +118,7 @@ def test_it_ends_at_the_stroke_and_no_deeper() -> None:
 
 def test_it_ends_when_the_steps_run_out() -> None:
     rules = replace(RULES, steps_max=7)
-    record = run_trial(exact(), Steps(), rules, np.random.default_rng(1))
+    record = insert(Trial(exact(), rules, np.random.default_rng(1)), Steps())
     assert len(record.poses) == len(record.wrenches) == 7
     assert not record.is_inserted
     assert not record.is_success
