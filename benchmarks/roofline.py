@@ -65,13 +65,13 @@ class Counting(float):
     The ignored types: `float` declares operators of two arguments, ours take either kind of call.
     """
 
-    __add__ = _counting("add", "__add__")  # type: ignore[assignment]
+    __add__ = _counting("add", "__add__")  # type: ignore[assignment]  # see above
     __radd__ = _counting("add", "__radd__")
-    __sub__ = _counting("add", "__sub__")  # type: ignore[assignment]
+    __sub__ = _counting("add", "__sub__")  # type: ignore[assignment]  # see above
     __rsub__ = _counting("add", "__rsub__")
-    __mul__ = _counting("mul", "__mul__")  # type: ignore[assignment]
+    __mul__ = _counting("mul", "__mul__")  # type: ignore[assignment]  # see above
     __rmul__ = _counting("mul", "__rmul__")
-    __truediv__ = _counting("div", "__truediv__")  # type: ignore[assignment]
+    __truediv__ = _counting("div", "__truediv__")  # type: ignore[assignment]  # see above
     __rtruediv__ = _counting("div", "__rtruediv__")
 
     def __neg__(self) -> "Counting":

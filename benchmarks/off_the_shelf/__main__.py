@@ -39,11 +39,10 @@ def main(
     batched: Annotated[Path, typer.Option(help="The same, batched (YAML).")] = Path(
         "config/training/batched.yaml"
     ),
-    algorithm: Annotated[list[str], typer.Option(help="Of the library.")] = list(ALGORITHMS),  # noqa: B006
-    formulation: Annotated[list[str], typer.Option(help="direct or residual.")] = list(  # noqa: B006
-        FORMULATIONS
-    ),
+    algorithm: Annotated[list[str] | None, typer.Option(help="Of the library; all.")] = None,
+    formulation: Annotated[list[str] | None, typer.Option(help="direct, residual; both.")] = None,
 ) -> None:
+    algorithms, forms = algorithm or ALGORITHMS, formulation or FORMULATIONS
     out.mkdir(parents=True, exist_ok=True)
     print(describe())
     packages = ("stable-baselines3", "torch", "gymnasium", "numba")
@@ -53,7 +52,7 @@ def main(
     for seed in range(seeds):
         tasks = [Task(PAPER, "residual", seed, 0, every_round, config)]
         tasks += [Task(BATCHED, "residual", seed, 0, every_round, batched)]
-        tasks += [Task(a, f, seed, steps, every, config) for f in formulation for a in algorithm]
+        tasks += [Task(a, f, seed, steps, every, config) for f in forms for a in algorithms]
         for task in tasks:
             runs.append(done(task))
             print(result.run_line(runs[-1]), flush=True)

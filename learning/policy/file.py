@@ -3,26 +3,23 @@
 Reading a file runs nothing that it holds: there is no pickle in it.
 """
 
-import json
 from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import JsonValue, ValidationError
+from pydantic import JsonValue
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from drivers.contract.errors import PolicyError
 from learning.atomic_file import write_atomically
+from learning.manifest_text import MANIFEST, read_manifest
 from learning.policy.manifest import Manifest, content_hash, make_manifest, policy_of
 from learning.policy.policy import Layer, Policy
 
 SUFFIX = ".safetensors"
-_MANIFEST = "manifest"
-_LENGTH_BYTES = 8
-"""A safetensors file begins with the length of its JSON header."""
 
 
 class StoredPolicy(NamedTuple):
@@ -56,7 +53,7 @@ def save_policy(policy: Policy, path: Path, about: Mapping[str, JsonValue]) -> N
         for number, layer in enumerate(policy.layers)
         for name, array in zip(_names(number), layer, strict=True)
     }
-    content = save(tensors, {_MANIFEST: text})
+    content = save(tensors, {MANIFEST: text})
     try:
         write_atomically(path.with_suffix(".onnx"), onnx)
         write_atomically(path, content)
@@ -90,7 +87,7 @@ def read_policy(path: Path) -> StoredPolicy:
             f"{path}: has a tensor of type {error}; all must be float32 (F32)"
         ) from error
     try:
-        manifest = _manifest(content)
+        manifest = read_manifest(content, Manifest, "it holds no policy of Tenon")
         layers = _layers(tensors)
         found = content_hash(manifest, layers)
         if found != manifest.sha256:
@@ -102,20 +99,6 @@ def read_policy(path: Path) -> StoredPolicy:
     except ValueError as error:
         raise PolicyError(f"{path}: {error}") from error
     return StoredPolicy(policy, manifest, sha256(content).hexdigest())
-
-
-def _manifest(content: bytes) -> Manifest:
-    length = int.from_bytes(content[:_LENGTH_BYTES], "little")
-    header = json.loads(content[_LENGTH_BYTES : _LENGTH_BYTES + length])
-    text = header.get("__metadata__", {}).get(_MANIFEST)
-    if text is None:
-        raise ValueError(f"has no {_MANIFEST} in its metadata, so it holds no policy of Tenon")
-    try:
-        return Manifest.model_validate_json(text)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"])) or "it"
-        raise ValueError(f"its {_MANIFEST} is not valid: {place}: {first['msg']}") from error
 
 
 def _layers(tensors: Mapping[str, np.ndarray]) -> tuple[Layer, ...]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 import torch
-from pydantic import JsonValue, ValidationError
+from pydantic import JsonValue
 from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor
@@ -22,13 +22,11 @@ from drivers.contract.errors import TrainingError
 from drivers.contract.settings import Settings
 from learning.atomic_file import write_atomically
 from learning.ddpg import Round
+from learning.manifest_text import MANIFEST, read_manifest
 from learning.training.plan import Plan
 from learning.training.trainer import Trainer
 
 SUFFIX = ".safetensors"
-_MANIFEST = "manifest"
-_LENGTH_BYTES = 8
-"""A safetensors file begins with the length of its JSON header."""
 _LIBRARIES = ("tenon", "numba", "numpy", "torch")
 _ADAM = ("step", "exp_avg", "exp_avg_sq")
 
@@ -81,7 +79,7 @@ def write_checkpoint(trainer: Trainer, path: Path) -> None:
     )
     signed = manifest.model_copy(update={"sha256": _hash(manifest, tensors)})
     try:
-        write_atomically(path, save(tensors, {_MANIFEST: signed.model_dump_json()}))
+        write_atomically(path, save(tensors, {MANIFEST: signed.model_dump_json()}))
     except OSError as error:
         raise TrainingError(f"{path}: cannot be written: {error.strerror}") from error
 
@@ -101,7 +99,7 @@ def read_checkpoint(trainer: Trainer, path: Path) -> None:
     except SafetensorError as error:
         raise TrainingError(f"{path}: is damaged or no safetensors file: {error}") from error
     try:
-        manifest = _manifest(content)
+        manifest = read_manifest(content, CheckpointManifest, "it is no checkpoint of Tenon")
         if (found := _hash(manifest, tensors)) != manifest.sha256:
             raise ValueError(
                 f"has been altered: its content has SHA-256 {found}, "
@@ -115,20 +113,6 @@ def read_checkpoint(trainer: Trainer, path: Path) -> None:
     trainer.ddpg.updates = manifest.updates
     trainer.replay.added = manifest.transitions
     trainer.rounds[:] = manifest.rounds
-
-
-def _manifest(content: bytes) -> CheckpointManifest:
-    length = int.from_bytes(content[:_LENGTH_BYTES], "little")
-    header = json.loads(content[_LENGTH_BYTES : _LENGTH_BYTES + length])
-    text = header.get("__metadata__", {}).get(_MANIFEST)
-    if text is None:
-        raise ValueError(f"has no {_MANIFEST} in its metadata, so it is no checkpoint of Tenon")
-    try:
-        return CheckpointManifest.model_validate_json(text)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"])) or "it"
-        raise ValueError(f"its {_MANIFEST} is not valid: {place}: {first['msg']}") from error
 
 
 def _check_origin(manifest: CheckpointManifest, trainer: Trainer) -> None:

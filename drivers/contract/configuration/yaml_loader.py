@@ -77,7 +77,7 @@ class _Loader(yaml.SafeLoader):
     """Composes nodes with the few scalar types that a configuration needs."""
 
     # PyYAML declares it an attribute of instances, which ClassVar would contradict.
-    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}  # noqa: RUF012, see above
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         event: yaml.Event = self.peek_event()  # type: ignore[no-untyped-call]  # PyYAML has no types here

@@ -47,3 +47,14 @@ def zero_policy(expert: Expert = EXPERT) -> Policy:
     layers = (Layer(np.zeros((3, 4), np.float32), np.zeros(3, np.float32)),)
     seen = inputs("force_x", "force_y", "force_z", "depth")
     return Policy(seen, outputs("step_x", "step_y", "step_z"), 2.0, layers, expert)
+
+
+def same(a: Policy, b: Policy) -> bool:
+    """Whether all that two policies are made of is the same, to the bit."""
+    arrays = zip(a.layers, b.layers, strict=True)
+    return (a.inputs, a.outputs, a.bound, a.expert) == (
+        b.inputs,
+        b.outputs,
+        b.bound,
+        b.expert,
+    ) and all(np.array_equal(x, y) for one, two in arrays for x, y in zip(one, two, strict=True))

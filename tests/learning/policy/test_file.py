@@ -1,8 +1,7 @@
-"""A policy on disk: what comes back, what is refused, what survives a kill."""
+"""A policy on disk: what comes back, and what is refused."""
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,22 +18,10 @@ from drivers.contract.errors import PolicyError
 from learning.policy.file import load_policy, read_policy, save_policy
 from learning.policy.inputs import OUTPUT_UNITS, READINGS
 from learning.policy.manifest import Manifest, content_hash, make_manifest
-from learning.policy.policy import Policy
-from tests.learning.policy.policies import EXPERT, random_policy, zero_policy
+from tests.learning.policy.policies import EXPERT, random_policy, same, zero_policy
 
 ABOUT: dict[str, Any] = {"seed": 7, "metrics": {"success": 1.0}, "note": "π", "none": None}
 ROOT = Path(__file__).parents[3]
-
-
-def same(a: Policy, b: Policy) -> bool:
-    """Whether all that two policies are made of is the same, to the bit."""
-    arrays = zip(a.layers, b.layers, strict=True)
-    return (a.inputs, a.outputs, a.bound, a.expert) == (
-        b.inputs,
-        b.outputs,
-        b.bound,
-        b.expert,
-    ) and all(np.array_equal(x, y) for one, two in arrays for x, y in zip(one, two, strict=True))
 
 
 @settings(max_examples=40)
@@ -274,53 +261,6 @@ def test_where_it_cannot_be_written(tmp_path: Path) -> None:
         save_policy(zero_policy(), tmp_path / "p.pt", {})
     with pytest.raises(PolicyError, match="cannot be written: No such file or directory"):
         save_policy(zero_policy(), tmp_path / "nowhere" / "p.safetensors", {})
-
-
-KILLED = """
-import os, signal, sys
-from pathlib import Path
-from learning.policy.file import save_policy
-from tests.learning.policy.policies import random_policy
-count = 0
-def die_at_the_nth(real):
-    def call(*arguments):
-        global count
-        count += 1
-        if count > int(sys.argv[2]):
-            os.kill(os.getpid(), signal.SIGKILL)
-        return real(*arguments)
-    return call
-os.fsync = die_at_the_nth(os.fsync)
-Path.replace = die_at_the_nth(Path.replace)
-save_policy(random_policy(99), Path(sys.argv[1]), {})
-"""
-
-
-@pytest.mark.parametrize("survived", range(6))
-def test_a_killed_writer_leaves_the_old_policy_or_the_new_one(path: Path, survived: int) -> None:
-    """Killed before each fsync and each renaming of the two files, the policy's being the last."""
-    killed = subprocess.run(
-        [sys.executable, "-c", KILLED, str(path), str(survived)],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": "."},
-        check=False,
-    )
-    assert killed.returncode == -signal.SIGKILL
-    expected = random_policy(99) if survived == 5 else random_policy()
-    assert same(load_policy(path), expected)
-
-
-def test_nothing_is_left_beside_the_files_when_writing_fails(
-    path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(PolicyError, match="cannot be written: No space left on device"):
-        save_policy(random_policy(99), path, {})
-    assert sorted(p.name for p in path.parent.iterdir()) == ["paper.onnx", "paper.safetensors"]
-    assert same(load_policy(path), random_policy())
 
 
 AT_RUN_TIME = """
