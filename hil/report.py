@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
+from jinja2 import Template
 
 from controllers.messages import ResetRecord, Severity
 from drivers.contract.errors import LogError, TenonError
@@ -25,6 +24,8 @@ from hil.summary import (
 )
 from hil.summary.words import MEANINGS, SEVERITIES, early_end, tally
 from hil.terminal import print_error, standard_output
+from learning.atomic_file import write_atomically
+from learning.templates import templates
 
 _UNUSABLE_INPUT = 2
 
@@ -80,30 +81,14 @@ def write_report(log: Log, path: Path, compared_with: Log | None = None) -> None
         governor=figures.governor_figure(log, summary),
         timing=figures.timing_figure(log),
     )
-    _replace(path, page)
-
-
-def _replace(path: Path, page: str) -> None:
-    """Write a whole page or leave the one before."""
-    place = path.resolve()
-    partial = place.with_name(f".{place.name}.part")
     try:
-        partial.write_text(page, encoding="utf-8")
-        partial.replace(place)
+        write_atomically(path.resolve(), page.encode())
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
         raise LogError(f"cannot write the report {path}: {error.strerror}") from error
 
 
 def _template() -> Template:
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(Path(__file__).parent)
     environment.filters["number"] = _number
     environment.filters["word"] = SEVERITIES.__getitem__
     environment.globals["severities"] = list(Severity)

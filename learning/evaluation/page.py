@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 
 from learning.drawing import alone
 from learning.evaluation.comparison import Comparison
@@ -18,6 +18,7 @@ from learning.evaluation.figures.insertion import examples
 from learning.evaluation.metrics import CONFIDENCE, QUANTITIES, Interval
 from learning.evaluation.table import parameters_text
 from learning.evaluation.training_log import TrainingLog
+from learning.templates import templates
 
 PAGE = "index.html"
 
@@ -56,13 +57,7 @@ def pages(comparison: Comparison, logs: Sequence[TrainingLog]) -> dict[str, str]
 
 
 def _environment() -> Environment:
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(Path(__file__).parent)
     environment.filters["number"] = _number
     environment.filters["interval"] = _interval
     return environment
