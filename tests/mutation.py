@@ -23,7 +23,19 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENT = ROOT / "docs/reference/mutation-testing.md"
 MUTATED = ("governor.py", "faults.py", "supervisor.py", "gate.py")
-TESTS = ("test_governor.py", "test_judge.py", "test_watch.py", "test_gate.py")
+TESTS = (
+    "test_governor.py",
+    "test_judge.py",
+    "test_judge_reach.py",
+    "test_judge_speed.py",
+    "test_watch.py",
+    "test_watch_data.py",
+    "test_watch_force.py",
+    "test_watch_motion.py",
+    "test_gate.py",
+    "test_gate_arm_and_valve.py",
+    "test_gate_stage.py",
+)
 TIMEOUT_S = 60
 JOBS = 2
 SURVIVED, KILLED, BROKEN = 0, 1, 2

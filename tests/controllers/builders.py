@@ -13,6 +13,7 @@ from controllers.messages import (
     ForceEstimate,
     Proposal,
     Rule,
+    Severity,
     Snapshot,
     Verdict,
 )
@@ -63,6 +64,14 @@ LIMITS = Limits.model_validate(
         "uncertainty_sigmas": 3.0,
     }
 )
+
+
+def up(value: float) -> float:
+    return math.nextafter(value, math.inf)
+
+
+def down(value: float) -> float:
+    return math.nextafter(value, -math.inf)
 
 
 def sample(force: tuple[float, float, float] = (0.0, 0.0, 0.0), **changes: Any) -> ForceSample:
@@ -120,6 +129,17 @@ def judged(
 
 def rules(verdict: Verdict) -> set[Rule]:
     return {reason.rule for reason in verdict.reasons}
+
+
+def fires(rule: Rule, severity: Severity, **changes: Any) -> bool:
+    verdict, _ = watched(**changes)
+    fired = [reason for reason in verdict.reasons if reason.rule is rule]
+    if not fired:
+        assert verdict.severity is Severity.PASS, verdict
+        return False
+    assert fired[0].severity is severity
+    assert verdict.severity is severity
+    return True
 
 
 def running(
