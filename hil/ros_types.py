@@ -6,6 +6,7 @@ where they do not, in the file.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 from typing import ClassVar, Generic, Protocol, TypeVar, cast
 
@@ -205,6 +206,7 @@ def _load_types() -> tuple[Typestore, dict[str, str]]:
 _STORE, _OWN_TEXTS = _load_types()
 
 
+@cache
 def definition(kind: type[RosMessage]) -> str:
     """Return the type's definition and those that it needs, as MCAP's `ros2msg` schemas want it.
 

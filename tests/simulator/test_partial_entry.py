@@ -89,6 +89,7 @@ def test_penetration_is_the_greatest_on_the_circle(
     assert cut >= 10
 
 
+@pytest.mark.slow
 def test_penetration_is_the_greatest_where_a_rim_overlaps_on_both_sides() -> None:
     """A shaft wedged in a tight hole overlaps a rim on two sides; one or both may have entered."""
     part, rng, n = Part((Hole(1.001e-3, 5e-4),)), np.random.default_rng(3), 5000

@@ -149,6 +149,7 @@ INTERRUPTED_START = """
 """
 
 
+@pytest.mark.slow
 def test_a_signal_while_the_writer_starts_ends_both(path: Path) -> None:
     command = [sys.executable, "-c", textwrap.dedent(INTERRUPTED_START), str(path)]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True)
@@ -190,6 +191,7 @@ SENDER = """
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["killed", "exited"])
 def test_the_writer_finishes_the_file_of_a_sender_that_is_gone(path: Path, ending: str) -> None:
     command = [sys.executable, "-W", "error", "-c", textwrap.dedent(SENDER), str(path), ending]

@@ -125,12 +125,14 @@ def test_a_full_disk_is_an_error_and_keeps_what_was_recorded(kind: LogKind, path
         assert rows == expected[name][: len(rows)]
 
 
+@pytest.mark.slow
 @each_kind
 def test_a_disk_without_room_for_the_metadata(kind: LogKind, path: Path) -> None:
     (text,) = _fill_disk(kind, path, limit=100, milliseconds=10)
     assert "File too large" in text
 
 
+@pytest.mark.slow
 @each_kind
 def test_a_disk_that_is_full_when_the_log_is_closed(kind: LogKind, path: Path) -> None:
     (text,) = _fill_disk(kind, path, limit=12_000, milliseconds=30)

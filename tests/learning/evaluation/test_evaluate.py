@@ -88,6 +88,7 @@ def test_end_to_end(tmp_path: Path) -> None:
     assert shown["skill"][8] == f"{float(rows['skill']['gap_closed_radial_mean_percent']):.0f}"
 
 
+@pytest.mark.slow
 def test_a_bad_file_ends_with_one_line(tmp_path: Path) -> None:
     result = evaluate("--config", str(tmp_path / "none.yaml"), "--out", str(tmp_path / "out"))
     assert result.returncode == 2
