@@ -88,15 +88,22 @@ def test_governor_takes_the_larger_of_measured_and_expected_force(
     assert rules(verdict) == ({Rule.GOVERNOR} if speed_mm_s < 1.5 else set())
 
 
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
 @pytest.mark.parametrize(
-    ("axis", "expected_mN", "speed_mm_s"), [(1, 65.0, 0.8940), (2, 930.0, 1.5707)]
+    ("axis", "translation", "expected_mN", "speed_mm_s"),
+    [
+        (0, (20e-6, 0.0, 0.0), 35.0, 0.8940),
+        (1, (20e-6, 0.0, 0.0), 65.0, 0.8940),
+        (2, (20e-6, 0.0, 0.0), 930.0, 1.5707),
+        (2, (0.0, 0.0, 60e-6), 965.0, 2.6368),
+    ],
 )
 def test_the_expected_force_is_held_against_the_limit_of_its_axis(
-    axis: int, expected_mN: float, speed_mm_s: float
+    axis: int, sign: float, translation: Vector3, expected_mN: float, speed_mm_s: float
 ) -> None:
     expected = [0.0, 0.0, 0.0]
-    expected[axis] = expected_mN * 1e-3
-    _, step = judged(proposal((20e-6, 0.0, 0.0), expected_force=tuple(expected)))
+    expected[axis] = sign * expected_mN * 1e-3
+    _, step = judged(proposal(translation, expected_force=tuple(expected)))
     assert step is not None
     assert step.speed_m_s == pytest.approx(speed_mm_s * 1e-3, abs=1e-7)
 
