@@ -110,6 +110,16 @@ def test_a_lost_belief_starts_again_and_finds_the_truth() -> None:
     assert len(pose_filter.population.hypotheses) == 256
 
 
+def test_after_a_restart_the_misfit_is_that_of_what_was_found() -> None:
+    """The misfit that led to the restart was over 40."""
+    observations = sweep(5)
+    pose_filter = told(contact_pose_filter(5), observations[:4])
+    pose_filter.population = Population(np.repeat(WRONG, 256, axis=0), np.zeros(256))
+    told(pose_filter, observations[4:5])
+    assert pose_filter.restarts == 1
+    assert pose_filter.belief().misfit < 25.0
+
+
 @pytest.mark.slow
 def test_the_whole_history_counts() -> None:
     """Told in one restart or one by one, the belief is the same to within its own width."""

@@ -91,6 +91,7 @@ def test_what_is_known_is_drawn_as_known() -> None:
         ({"stiffness_N_m": (2e3, 1e3)}, r"Prior.stiffness_N_m is from 2000.0 to 1000.0; .* order"),
         ({"clearance_m": (2e-6, math.inf)}, r"Prior.clearance_m is from 2e-06 to inf; .* finite"),
         ({"clearance_m": (math.nan, 1e-6)}, r"Prior.clearance_m is from nan to 1e-06; .* finite"),
+        ({"clearance_m": (-math.inf, 1e-6)}, r"Prior.clearance_m is from -inf to 1e-06; .* finite"),
         ({"friction": (-0.1, 0.3)}, r"Prior.friction \(low\) is -0.1; .* at least 0"),
         ({"friction": (0.4, 0.3)}, r"Prior.friction is from 0.4 to 0.3; .* in order"),
     ],

@@ -126,6 +126,22 @@ def test_a_halted_stage_is_noticed(axis: int, direction: float) -> None:
     np.testing.assert_allclose(pose[:3], halted, rtol=0, atol=1.0 * UM)
 
 
+def test_after_a_halt_the_place_is_known_as_well_as_a_report() -> None:
+    """Unit deviations: at the next report a gain of (1 + 1)/(1 + 1 + 1) = 2/3."""
+    place = PlaceFilter(StageNoise(1 * UM, 1 * UM))
+    halted = place.update(seen((0.0, 0.0, -20 * UM), commanded=(0.0, 0.0, 0.0)))
+    assert halted[2] == -20 * UM
+    pose = place.update(seen((0.0, 0.0, -7 * UM), commanded=(0.0, 0.0, 10 * UM)))
+    assert pose[2] == pytest.approx(-8 * UM, abs=1e-15)
+
+
+def test_a_stage_without_noise_is_where_it_reports() -> None:
+    place = PlaceFilter(StageNoise(0.0, 0.0))
+    for sent, reported in ((0, 0), (10, 10), (20, 13)):
+        pose = place.update(seen((0, 0, reported * UM), commanded=(0, 0, sent * UM)))
+        assert pose[2] == reported * UM
+
+
 @pytest.mark.parametrize(("off_um", "is_halt"), [(4.99, False), (5.01, True)])
 def test_the_border_between_noise_and_halt(off_um: float, is_halt: bool) -> None:
     """Five deviations of a report of 0.8 um and a step of 0.6 um, together 1 um: 5 um."""

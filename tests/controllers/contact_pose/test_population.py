@@ -120,8 +120,57 @@ def test_a_reading_that_rules_out_nearly_all_ends_in_bounded_time() -> None:
     rest = evaluate(population.hypotheses)[1]
     for _ in take_in(population, rest, evaluate, PRIOR, 1, generator):
         pauses += 1
-    # Of each stage: one after resampling, one after its move.
-    assert 200 < pauses <= 2 * 131
+        # Of each stage: one after resampling, one after its move.
+        assert pauses <= 2 * 131
+    assert pauses > 200
+
+
+def test_the_last_share_is_what_the_others_left() -> None:
+    """One reading that only the first hypothesis survives: all shares but the last are the least.
+
+    A millionth of it, then a tenth of what has been taken in.
+    """
+    generator = np.random.default_rng(9)
+    population = Population(PRIOR.drawn(8, generator), np.zeros(8))
+    ruled_out = np.array([0.0, *[-1e30] * 7])
+
+    def evaluate(hypotheses: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return np.zeros(8), ruled_out
+
+    finish(take_in(population, ruled_out, evaluate, PRIOR, 1, generator))
+    taken, share = 0.0, 1e-6
+    while taken + share < 1.0:
+        taken += share
+        share = max(1e-6, 0.1 * taken)
+    np.testing.assert_allclose(population.log_weights[1:] / -1e30, 1.0 - taken, rtol=1e-9)
+
+
+def test_a_parameter_that_all_agree_on_still_moves() -> None:
+    """Moves are differences of members, and of these there is none."""
+    generator = np.random.default_rng(10)
+    population = Population(PRIOR.drawn(64, generator), np.zeros(64))
+    population.hypotheses[:, 6] = 0.2
+
+    def evaluate(hypotheses: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return np.zeros(64), -0.5 * (shares(hypotheses)[:, 0] / 0.01) ** 2
+
+    rest = evaluate(population.hypotheses)[1]
+    finish(take_in(population, rest, evaluate, PRIOR, 3, generator))
+    off = np.abs(shares(population.hypotheses)[:, 6])
+    assert 0.0 < off.max() < 1e-3
+
+
+def test_resampling_finds_a_member_where_rounded_weights_do_not_add_up_to_one() -> None:
+    class Latest:
+        """The last number that a generator can draw."""
+
+        def random(self) -> float:
+            return math.nextafter(1.0, 0.0)
+
+    population = Population(np.arange(70.0).reshape(10, 7), np.zeros(10))
+    assert np.cumsum(population.weights)[-1] < 1.0
+    rows = population.resampled(10, Latest())  # type: ignore[arg-type]  # all that is asked of it
+    np.testing.assert_array_equal(rows[-1], population.hypotheses[-1])
 
 
 def test_no_hypothesis_leaves_the_prior() -> None:
