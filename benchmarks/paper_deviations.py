@@ -22,7 +22,7 @@ import torch
 from drivers.contract.settings import Settings
 from learning.environments.config import Float32Array
 from learning.environments.core import Batch, DualPegCore
-from learning.policy.policy import Expert
+from learning.policy.expert import Expert
 from learning.replay import Replay
 from learning.task import InsertionTask, Start, Step
 from learning.training.evaluation import insert_all

@@ -50,5 +50,5 @@ def _about(choice: PolicyConfig) -> Mapping[str, str]:
         "name": choice.path.stem,
         "file": str(choice.path),
         "sha256": choice.stored.sha256,
-        "manifest": choice.stored.manifest.model_dump_json(),
+        "manifest": choice.stored.manifest.written(),
     }

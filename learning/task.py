@@ -8,7 +8,7 @@ from drivers.contract.messages import Vector3
 from learning.environments.config import OBSERVATION, DualPegConfig, Float32Array
 from learning.environments.core import Batch, DualPegCore
 from learning.environments.kernels import Outcome
-from learning.policy.policy import Expert
+from learning.policy.expert import Expert
 from simulator.checks import FloatArray
 
 _RUNNING, _OUT_OF_STEPS = int(Outcome.RUNNING), int(Outcome.OUT_OF_STEPS)

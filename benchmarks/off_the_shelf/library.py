@@ -27,9 +27,11 @@ from learning.environments.config import (
     DualPegConfig,
     Float32Array,
 )
+from learning.policy.expert import Expert
 from learning.policy.inputs import Input, Output
-from learning.policy.policy import Expert, Layer, Policy
+from learning.policy.policy import Layer, Policy
 from learning.training.plan import Plan
+from simulator.checks import FloatArray
 
 Model = DDPG | TD3 | SAC
 ENVIRONMENT = "learning.environments:tenon/DualPeg-v0"
@@ -78,25 +80,27 @@ class ExpertBeside(gymnasium.Wrapper[Float32Array, Float32Array, Float32Array, F
     def __init__(self, env: gymnasium.Env[Float32Array, Float32Array], form: Formulation) -> None:
         super().__init__(env)
         self._form = form
-        self._seen_N = np.zeros(3)
+        self._expert_m = np.zeros(3)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Float32Array, dict[str, Any]]:
         observation, info = self.env.reset(seed=seed, options=options)
-        self._seen_N = self._form.environment.force_N(observation)
+        self._expert_m = self._expert_step(observation)
         return observation, info
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
         form = self._form
-        step_m = np.array(form.range_m) * action
-        step_m[:2] -= form.expert.gain_m_N * self._seen_N[:2]
-        step_m[2] += form.expert.axial_step_m
+        step_m = np.array(form.range_m) * action + self._expert_m
         observation, reward, ended, ran_out, info = self.env.step(form.environment.action(step_m))
-        self._seen_N = form.environment.force_N(observation)
+        self._expert_m = self._expert_step(observation)
         if not form.ends:
             ended, ran_out = False, ended or ran_out
         return observation, float(reward), ended, ran_out, info
+
+    def _expert_step(self, observation: Float32Array) -> FloatArray:
+        config = self._form.environment
+        return self._form.expert.step(config.force_N(observation)[:2], config.depth_m(observation))
 
 
 def make(algorithm: str, form: Formulation, seed: int, buffer_size: int) -> Model:

@@ -101,8 +101,7 @@ def quality_of(policy: Policy, n: int = STATES) -> Quality:
     while (running := outcome == _RUNNING).any():
         seen_N, depth_m = PAPER.force_N(batch.observation), PAPER.depth_m(batch.observation)
         step_m = policy.residuals(np.column_stack([seen_N, depth_m]))
-        step_m[:, :2] -= policy.expert.gain_m_N * seen_N[:, :2]
-        step_m[:, 2] += policy.expert.axial_step_m
+        step_m += policy.expert.step(seen_N[:, :2], depth_m)
         batch = core.step(PAPER.action(step_m))
         radial_N = np.hypot(batch.force_N[:, 0], batch.force_N[:, 1])
         rewards[running] += batch.reward[running]

@@ -44,7 +44,7 @@ def save_policy(policy: Policy, path: Path, about: Mapping[str, JsonValue]) -> N
         raise PolicyError(f"the policy's file {path} is not valid: its name must end in {SUFFIX}")
     try:
         manifest = make_manifest(policy, about)
-        text = manifest.model_dump_json()
+        text = manifest.written()
     except (TypeError, ValueError) as error:
         raise PolicyError(f"{path}: the manifest cannot be written as JSON: {error}") from error
     onnx = exported(policy, manifest)

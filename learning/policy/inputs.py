@@ -44,6 +44,8 @@ READINGS: Mapping[str, Reading] = MappingProxyType(
         "torque_y": Reading("N m", lambda seen: seen.wrench[4]),
         "torque_z": Reading("N m", lambda seen: seen.wrench[5]),
         "depth": Reading("m", lambda seen: seen.pose.position[2]),
+        "turn_x": Reading("rad", lambda seen: seen.pose.rotation[0]),
+        "turn_y": Reading("rad", lambda seen: seen.pose.rotation[1]),
         "displacement_x": Reading("m", lambda seen: seen.displacement[0]),
         "displacement_y": Reading("m", lambda seen: seen.displacement[1]),
         "displacement_z": Reading("m", lambda seen: seen.displacement[2]),

@@ -11,8 +11,9 @@ from pydantic import JsonValue
 
 from drivers.contract.messages import Vector3
 from drivers.contract.settings import Settings
+from learning.policy.expert import Approach, Expert
 from learning.policy.inputs import OUTPUT_UNITS, READINGS, Input, Output
-from learning.policy.policy import Expert, Layer, Policy
+from learning.policy.policy import Layer, Policy
 
 _LIBRARIES = ("tenon", "numpy", "safetensors", "torch", "onnx", "onnxruntime")
 
@@ -25,20 +26,32 @@ class Channel(Settings):
     scale: float
 
 
+class ApproachManifest(Settings):
+    """The expert's short steps at the first rim."""
+
+    step_m: float
+    depth_m: float
+
+
 class ExpertManifest(Settings):
     """The expert that the policy corrects."""
 
     gain_m_N: float
     axial_step_m: float
     step_box_m: Vector3
+    approach: ApproachManifest | None = None
 
 
 class Manifest(Settings):
-    """Everything about a policy but its weights; SI units."""
+    """Everything about a policy but its weights; SI units.
+
+    A key that has its default is not written and not hashed.
+    """
 
     format: Literal[1]
     inputs: tuple[Channel, ...]
     outputs: tuple[Channel, ...]
+    history: int = 1
     bound: float
     hidden_activation: Literal["relu"]
     output_activation: Literal["tanh"]
@@ -50,10 +63,14 @@ class Manifest(Settings):
     sha256: str
     """Of the rest of the manifest and the weights; see `content_hash`."""
 
+    def written(self) -> str:
+        """Return it as JSON, as files hold it."""
+        return self.model_dump_json(exclude_defaults=True)
+
 
 def make_manifest(policy: Policy, about: Mapping[str, JsonValue]) -> Manifest:
     """Return the manifest of a policy; raises `ValueError` for what JSON cannot hold."""
-    expert = policy.expert
+    expert, approach = policy.expert, policy.expert.approach
     manifest = Manifest(
         format=1,
         inputs=tuple(
@@ -64,6 +81,7 @@ def make_manifest(policy: Policy, about: Mapping[str, JsonValue]) -> Manifest:
             Channel(name=name, unit=OUTPUT_UNITS[name], scale=scale)
             for name, scale in policy.outputs
         ),
+        history=policy.history,
         bound=policy.bound,
         hidden_activation="relu",
         output_activation="tanh",
@@ -71,6 +89,9 @@ def make_manifest(policy: Policy, about: Mapping[str, JsonValue]) -> Manifest:
             gain_m_N=expert.gain_m_N,
             axial_step_m=expert.axial_step_m,
             step_box_m=expert.step_box_m,
+            approach=None
+            if approach is None
+            else ApproachManifest(step_m=approach.step_m, depth_m=approach.depth_m),
         ),
         versions={
             "python": platform.python_version(),
@@ -87,7 +108,7 @@ def content_hash(manifest: Manifest, layers: tuple[Layer, ...]) -> str:
 
     Raises `ValueError` if the manifest holds a number that is not finite.
     """
-    rest = manifest.model_dump(mode="json", exclude={"sha256"})
+    rest = manifest.model_dump(mode="json", exclude={"sha256"}, exclude_defaults=True)
     digest = sha256(json.dumps(rest, sort_keys=True, allow_nan=False).encode())
     for weight, bias in layers:
         digest.update(weight.astype("<f4").tobytes())
@@ -107,11 +128,17 @@ def policy_of(manifest: Manifest, layers: tuple[Layer, ...]) -> Policy:
                 raise ValueError(
                     f"unit of {kind} {channel.name!r} is {channel.unit!r}; it must be {unit!r}"
                 )
-    expert = manifest.expert
+    expert, approach = manifest.expert, manifest.expert.approach
     return Policy(
         inputs=tuple(Input(channel.name, channel.scale) for channel in manifest.inputs),
         outputs=tuple(Output(channel.name, channel.scale) for channel in manifest.outputs),
         bound=manifest.bound,
         layers=layers,
-        expert=Expert(expert.gain_m_N, expert.axial_step_m, expert.step_box_m),
+        expert=Expert(
+            expert.gain_m_N,
+            expert.axial_step_m,
+            expert.step_box_m,
+            None if approach is None else Approach(approach.step_m, approach.depth_m),
+        ),
+        history=manifest.history,
     )

@@ -20,7 +20,8 @@ _SAMPLES = 1_000
 def exported(policy: Policy, manifest: Manifest) -> bytes:
     """Return the policy as an ONNX model with input `values` and output `residual`.
 
-    Both are float32 of shape (batch, channels). Raises PolicyError if onnxruntime does not compute
+    Both are float32, of shape (batch, n_values) as `Policy.residuals` takes them, and of shape
+    (batch, n_outputs). Raises PolicyError if onnxruntime does not compute
     what the policy does.
     """
     content: bytes = _model(policy, manifest).SerializeToString()
@@ -39,7 +40,7 @@ def _model(policy: Policy, manifest: Manifest) -> onnx.ModelProto:
         nodes.append(helper.make_node(operator, operands, [output], name=output))
         return output
 
-    scales = constant("input_scale", [scale for _, scale in policy.inputs])
+    scales = constant("input_scale", _input_scales(policy))
     low, high = constant("lower_bound", -policy.bound), constant("upper_bound", policy.bound)
     signal = add("Div", "values", scales, output="scaled")
     signal = add("Clip", signal, low, high, output="bounded")
@@ -52,7 +53,7 @@ def _model(policy: Policy, manifest: Manifest) -> onnx.ModelProto:
         signal = add(activation, signal, output=f"{name}.{activation.lower()}")
     ranges = constant("output_scale", [scale for _, scale in policy.outputs])
     add("Mul", signal, ranges, output="residual")
-    width = {"values": len(policy.inputs), "residual": len(policy.outputs)}
+    width = {"values": policy.n_values, "residual": len(policy.outputs)}
     ports = {
         name: helper.make_tensor_value_info(name, TensorProto.FLOAT, ["batch", size])
         for name, size in width.items()
@@ -63,15 +64,19 @@ def _model(policy: Policy, manifest: Manifest) -> onnx.ModelProto:
     model = helper.make_model(
         graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=IR_VERSION
     )
-    helper.set_model_props(model, {"manifest": manifest.model_dump_json()})
+    helper.set_model_props(model, {"manifest": manifest.written()})
     onnx.checker.check_model(model, full_check=True)
     return model
+
+
+def _input_scales(policy: Policy) -> list[float]:
+    return [scale for _, scale in policy.inputs] * policy.history
 
 
 def _check(policy: Policy, content: bytes) -> None:
     """Compare on random inputs, some of them beyond the bound."""
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
-    reach = 1.5 * policy.bound * np.array([scale for _, scale in policy.inputs])
+    reach = 1.5 * policy.bound * np.array(_input_scales(policy))
     generator = np.random.default_rng(0)
     values = generator.uniform(-reach, reach, (_SAMPLES, len(reach))).astype(np.float32)
     (found,) = session.run(["residual"], {"values": values})

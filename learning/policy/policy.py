@@ -11,14 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from controllers.messages import Observation
-from drivers.contract.messages import Vector3
+from learning.policy.expert import Expert, check_expert
 from learning.policy.inputs import OUTPUT_UNITS, READINGS, Input, Output
-from simulator.checks import FloatArray, non_negative, positive
+from simulator.checks import FloatArray, positive
 
 Float32Array = npt.NDArray[np.float32]
 
 SMALLEST_SCALE, LARGEST_SCALE = 1e-12, 1e12
 """Between them a scale can be divided by without loss."""
+LONGEST_HISTORY = 64
+"""Most observations that a network sees at once."""
 
 
 class Layer(NamedTuple):
@@ -30,26 +32,14 @@ class Layer(NamedTuple):
     """(outputs,)."""
 
 
-class Expert(NamedTuple):
-    """The expert (eq. 6) that a policy corrects, and the box that the sum of both is cut to.
-
-    With gain and axial step 0 there is none: the policy's answer is the whole step.
-    """
-
-    gain_m_N: float
-    """Lateral step per radial force, against it."""
-    axial_step_m: float
-    step_box_m: Vector3
-    """Longest step along each axis, to either side."""
-
-
 @dataclass(frozen=True, eq=False)
 class Policy:
     """Answers inputs in SI units with a residual in SI units.
 
-    The network sees each input divided by its scale and cut to `bound`, has ReLU between its layers
-    and tanh at its end, which is multiplied by the output's scale. Raises `ValueError`, naming what
-    is wrong, for names, scales, shapes or numbers that cannot be used.
+    The network sees the newest `history` observations, the newest first: all inputs of each, every
+    one divided by its scale and cut to `bound`. It has ReLU between its layers and tanh at its end,
+    which is multiplied by the output's scale. Raises `ValueError`, naming what is wrong, for names,
+    scales, shapes or numbers that cannot be used.
     """
 
     inputs: tuple[Input, ...]
@@ -58,6 +48,8 @@ class Policy:
     """Largest magnitude of a scaled input."""
     layers: tuple[Layer, ...]
     expert: Expert
+    history: int = 1
+    """How many observations the network sees, from 1 to `LONGEST_HISTORY`."""
     _input_scale: FloatArray = field(init=False, repr=False)
     _output_scale: FloatArray = field(init=False, repr=False)
 
@@ -65,33 +57,41 @@ class Policy:
         _check_channels("input", self.inputs, READINGS)
         _check_channels("output", self.outputs, OUTPUT_UNITS)
         positive("bound", self.bound)
-        _check_expert(self.expert)
+        check_expert(self.expert)
+        _check_history(self.history)
         object.__setattr__(self, "layers", tuple(_layers(self)))
-        object.__setattr__(self, "_input_scale", np.array([i.scale for i in self.inputs]))
+        scales = [i.scale for i in self.inputs] * self.history
+        object.__setattr__(self, "_input_scale", np.array(scales))
         object.__setattr__(self, "_output_scale", np.array([o.scale for o in self.outputs]))
 
+    @property
+    def n_values(self) -> int:
+        """How many numbers the network sees: all inputs of `history` observations."""
+        return len(self.inputs) * self.history
+
     def read(self, observation: Observation) -> list[float]:
-        """Return the inputs of an observation in SI units."""
+        """Return the inputs (n_inputs,) of one observation in SI units."""
         return [READINGS[name].read(observation) for name, _ in self.inputs]
 
     def residual(self, values: Sequence[float] | FloatArray) -> FloatArray:
-        """Return the residual (n_outputs,) in SI units for one set of inputs (n_inputs,).
+        """Return the residual (n_outputs,) in SI units for one set of values (n_values,).
 
-        An input that is NaN makes the whole residual NaN. Raises `ValueError` for another shape.
+        They are the inputs of `history` observations, the newest first, in SI units. A value that
+        is NaN makes the whole residual NaN. Raises `ValueError` for another shape.
         """
         given = np.asarray(values, dtype=np.float64)
         if given.shape != self._input_scale.shape:
-            raise ValueError(f"inputs have shape {given.shape}; it must be ({len(self.inputs)},)")
+            raise ValueError(f"inputs have shape {given.shape}; it must be ({self.n_values},)")
         return self._answer(given)
 
     def residuals(self, values: npt.ArrayLike) -> FloatArray:
-        """Return the residuals (n, n_outputs) in SI units for n sets of inputs (n, n_inputs).
+        """Return the residuals (n, n_outputs) in SI units for n sets of values (n, n_values).
 
         Each row is that of `residual` to rounding. Raises `ValueError` for another shape.
         """
         given = np.asarray(values, dtype=np.float64)
-        if given.ndim != 2 or given.shape[1] != len(self.inputs):
-            raise ValueError(f"inputs have shape {given.shape}; it must be (n, {len(self.inputs)})")
+        if given.ndim != 2 or given.shape[1] != self.n_values:
+            raise ValueError(f"inputs have shape {given.shape}; it must be (n, {self.n_values})")
         return self._answer(given)
 
     def _answer(self, values: FloatArray) -> FloatArray:
@@ -120,15 +120,10 @@ def _check_channels(kind: str, channels: Sequence[Input | Output], valid: Iterab
             )
 
 
-def _check_expert(expert: Expert) -> None:
-    for axis, length in zip("xyz", expert.step_box_m, strict=True):
-        positive(f"step_box_m ({axis}) of the expert", length)
-    non_negative("gain_m_N of the expert", expert.gain_m_N)
-    longest = expert.step_box_m[2]
-    if not 0.0 <= expert.axial_step_m <= longest:
+def _check_history(history: int) -> None:
+    if not (isinstance(history, int) and 1 <= history <= LONGEST_HISTORY):
         raise ValueError(
-            f"axial_step_m of the expert is {expert.axial_step_m!r}; "
-            f"it must be at least 0 and at most {longest!r}, the step box along z"
+            f"history is {history!r}; it must be a whole number from 1 to {LONGEST_HISTORY}"
         )
 
 
@@ -136,7 +131,7 @@ def _layers(policy: Policy) -> Iterable[Layer]:
     """Yield the layers as read-only copies in single precision."""
     if not policy.layers:
         raise ValueError("there is no layer; there must be at least one")
-    width = len(policy.inputs)
+    width = policy.n_values
     for number, (given_weight, given_bias) in enumerate(policy.layers):
         with np.errstate(over="ignore"):
             weight = np.array(given_weight, dtype=np.float32, order="C")

@@ -66,12 +66,10 @@ def insert_all(
     forces = []
     holes = config.part.holes
     rim_m = sum(h.gap_m for h in holes) + sum(h.thickness_m for h in holes[:-1])
-    gain, feed = policy.expert.gain_m_N, policy.expert.axial_step_m
     while (running := outcome == Outcome.RUNNING).any():
         force_N, depth_m = config.force_N(batch.observation), config.depth_m(batch.observation)
         step_m = policy.residuals(np.column_stack([force_N, depth_m]))
-        step_m[:, :2] -= gain * force_N[:, :2]
-        step_m[:, 2] += feed
+        step_m += policy.expert.step(force_N[:, :2], depth_m)
         batch = core.step(config.action(step_m))
         outcome[running] = batch.outcome[running]
         steps[running] = batch.steps[running]

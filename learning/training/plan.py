@@ -11,7 +11,7 @@ from drivers.contract.settings import written
 from learning.environments.config import DualPegConfig, RewardWeights
 from learning.environments.core import DualPegCore
 from learning.part import PartSettings
-from learning.policy.policy import Expert
+from learning.policy.expert import Expert
 from learning.settings import TaskSettings, TrainingSettings
 from learning.task import InsertionTask
 from simulator.checks import FloatArray

@@ -18,8 +18,8 @@ from benchmarks.off_the_shelf.library import ALGORITHMS, DIRECT, ExpertBeside, F
 from benchmarks.off_the_shelf.quality import Point, Quality, Recorder, quality_of, start_poses
 from benchmarks.off_the_shelf.runs import OURS, Run, Task
 from learning.environments import PAPER, DualPegEnv, Outcome
+from learning.policy.expert import Expert
 from learning.policy.file import load_policy
-from learning.policy.policy import Expert
 from learning.task import InsertionTask, Start
 from tests.learning.policy.policies import EXPERT, zero_policy
 from tests.learning.training.plans import short_file, short_plan

@@ -13,7 +13,9 @@ from drivers.contract.errors import ConfigurationError
 from hil.cell import Cell
 from hil.config import CellConfig, load_cell
 from hil.controller_factory import controller_factory
+from learning.policy.expert import Approach
 from learning.policy.file import save_policy
+from learning.policy.inputs import Output
 from learning.policy.policy import Policy
 from learning.skill_controller import SkillController
 from tests.hil.config.cell_files import POLICY, Load, Refuse, shipped, write
@@ -55,12 +57,9 @@ def test_a_damaged_policy_is_told_with_the_other_problems(tmp_path: Path) -> Non
     assert ": is damaged or no safetensors file: " in policy
 
 
-TURNING = random_policy(answered=("step_z", "turn_x"))
-
-
-def turning(scale_rad: float) -> Policy:
-    outputs = (TURNING.outputs[0], TURNING.outputs[1]._replace(scale=scale_rad))
-    return replace(TURNING, outputs=outputs)
+def turning(scale_rad: float, name: str = "turn_x") -> Policy:
+    policy = random_policy(answered=("step_z", name))
+    return replace(policy, outputs=(policy.outputs[0], Output(name, scale_rad)))
 
 
 def made(config: CellConfig, name: str) -> Controller:
@@ -88,6 +87,22 @@ def made(config: CellConfig, name: str) -> Controller:
             None,
             "its turn_x of up to 0.0500003079077 deg must not exceed "
             "the limit rotation_step_limit_deg = 0.05",
+        ),
+        (turning(8.7266e-4, "turn_y"), None, None),
+        (
+            turning(math.radians(0.2), "turn_y"),
+            None,
+            "its turn_y of up to 0.2 deg must not exceed the limit rotation_step_limit_deg = 0.05",
+        ),
+        (
+            random_policy(
+                seen=("force_x", "turn_x", "turn_y"),
+                answered=("step_z", "turn_x", "turn_y"),
+                expert=EXPERT._replace(approach=Approach(2e-6, 3e-5)),
+                history=8,
+            ),
+            None,
+            None,
         ),
     ],
 )

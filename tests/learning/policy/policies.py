@@ -4,8 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from learning.policy.expert import Expert
 from learning.policy.inputs import OUTPUT_UNITS, READINGS, Input, Output
-from learning.policy.policy import Expert, Layer, Policy
+from learning.policy.policy import Layer, Policy
 
 SCALES = {"N": 0.07, "N m": 3e-3, "m": 2.3e-3, "rad": 8e-4}
 EXPERT = Expert(0.2 * 8e-4, 5e-5, (2e-5, 2e-5, 6e-5))
@@ -28,10 +29,11 @@ def random_policy(
     answered: tuple[str, ...] = ("step_x", "step_y", "step_z"),
     bound: float = 2.0,
     expert: Expert = EXPERT,
+    history: int = 1,
 ) -> Policy:
     """Of random weights, large enough that its answers cover much of their range."""
     generator = np.random.default_rng(seed)
-    widths = (len(seen), *hidden, len(answered))
+    widths = (len(seen) * history, *hidden, len(answered))
     layers = tuple(
         Layer(
             generator.normal(0.0, 1.5 / np.sqrt(n), (m, n)).astype(np.float32),
@@ -39,7 +41,7 @@ def random_policy(
         )
         for n, m in pairwise(widths)
     )
-    return Policy(inputs(*seen), outputs(*answered), bound, layers, expert)
+    return Policy(inputs(*seen), outputs(*answered), bound, layers, expert, history)
 
 
 def zero_policy(expert: Expert = EXPERT) -> Policy:
@@ -52,9 +54,10 @@ def zero_policy(expert: Expert = EXPERT) -> Policy:
 def same(a: Policy, b: Policy) -> bool:
     """Whether all that two policies are made of is the same, to the bit."""
     arrays = zip(a.layers, b.layers, strict=True)
-    return (a.inputs, a.outputs, a.bound, a.expert) == (
+    return (a.inputs, a.outputs, a.bound, a.expert, a.history) == (
         b.inputs,
         b.outputs,
         b.bound,
         b.expert,
+        b.history,
     ) and all(np.array_equal(x, y) for one, two in arrays for x, y in zip(one, two, strict=True))

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from safetensors.numpy import load, save
 
 from drivers.contract.errors import PolicyError
+from learning.policy.expert import Approach
 from learning.policy.file import load_policy, read_policy, save_policy
 from learning.policy.inputs import OUTPUT_UNITS, READINGS
 from learning.policy.manifest import Manifest, content_hash, make_manifest
@@ -32,6 +33,8 @@ ROOT = Path(__file__).parents[3]
     st.lists(st.sampled_from(sorted(OUTPUT_UNITS)), min_size=1, unique=True),
     st.floats(1e-3, 10.0),
     st.floats(0.0, 1.0),
+    st.integers(1, 5),
+    st.none() | st.builds(Approach, st.floats(1e-9, 5e-5), st.floats(1e-9, 1e-3)),
 )
 def test_there_and_back(
     tmp_path_factory: pytest.TempPathFactory,
@@ -41,15 +44,19 @@ def test_there_and_back(
     answered: list[str],
     bound: float,
     gain_m_N: float,
+    history: int,
+    approach: Approach | None,
 ) -> None:
-    expert = EXPERT._replace(gain_m_N=gain_m_N)
-    policy = random_policy(seed, tuple(hidden), tuple(seen), tuple(answered), bound, expert)
+    expert = EXPERT._replace(gain_m_N=gain_m_N, approach=approach)
+    policy = random_policy(
+        seed, tuple(hidden), tuple(seen), tuple(answered), bound, expert, history
+    )
     path = tmp_path_factory.getbasetemp() / "there.safetensors"
     save_policy(policy, path, ABOUT)
     stored = read_policy(path)
     assert same(stored.policy, policy)
     assert stored.manifest.about == ABOUT
-    values = np.random.default_rng(seed).normal(0.0, 1.0, len(seen))
+    values = np.random.default_rng(seed).normal(0.0, 1.0, policy.n_values)
     assert (stored.policy.residual(values) == policy.residual(values)).all()
 
 
@@ -150,6 +157,10 @@ def rewritten(path: Path, spoil: Spoil, is_signed: bool) -> None:
         lambda manifest, tensors: manifest["inputs"][0].update(scale=0.14),
         lambda manifest, tensors: manifest["inputs"].reverse(),
         lambda manifest, tensors: manifest["expert"].update(gain_m_N=8e-4),
+        lambda manifest, tensors: manifest["expert"].update(
+            approach={"step_m": 1e-6, "depth_m": 1e-5}
+        ),
+        lambda manifest, tensors: manifest.update(history=2),
         lambda manifest, tensors: manifest.update(bound=9.0),
         lambda manifest, tensors: manifest["about"].update(seed=8),
         lambda manifest, tensors: manifest["versions"].update(numpy="1"),
@@ -171,7 +182,8 @@ def test_altered(path: Path, spoil: Spoil) -> None:
         (
             lambda manifest, tensors: manifest["inputs"][0].update(name="forse_x"),
             "input 'forse_x' is not known; valid are force_x, force_y, force_z, torque_x, "
-            "torque_y, torque_z, depth, displacement_x, displacement_y, displacement_z",
+            "torque_y, torque_z, depth, turn_x, turn_y, displacement_x, displacement_y, "
+            "displacement_z",
         ),
         (
             lambda manifest, tensors: manifest["outputs"][2].update(unit="um"),
@@ -194,6 +206,17 @@ def test_altered(path: Path, spoil: Spoil) -> None:
             "axial_step_m of the expert is 1.0; "
             "it must be at least 0 and at most 6e-05, the step box along z",
         ),
+        (
+            lambda manifest, tensors: manifest["expert"].update(
+                approach={"step_m": 6e-5, "depth_m": 1e-5}
+            ),
+            "step_m of the expert's approach is 6e-05; it must be greater than 0 and at most "
+            "5e-05, the expert's axial_step_m",
+        ),
+        (
+            lambda manifest, tensors: manifest.update(history=65),
+            "history is 65; it must be a whole number from 1 to 64",
+        ),
     ],
 )
 def test_signed_but_not_valid(path: Path, spoil: Spoil, message: str) -> None:
@@ -210,6 +233,14 @@ def test_signed_but_not_valid(path: Path, spoil: Spoil, message: str) -> None:
         (
             lambda manifest, tensors: manifest.update(hidden_activation="elu"),
             "its manifest is not valid: hidden_activation: Input should be 'relu'",
+        ),
+        (
+            lambda manifest, tensors: manifest.update(history=1.5),
+            "its manifest is not valid: history: Input should be a valid integer",
+        ),
+        (
+            lambda manifest, tensors: manifest["expert"].update(approach={"step_m": 1e-6}),
+            "its manifest is not valid: expert.approach.depth_m: Field required",
         ),
         (
             lambda manifest, tensors: manifest["inputs"][1].update(scale="0.1"),

@@ -24,13 +24,21 @@ def run(model: bytes, values: np.ndarray) -> np.ndarray:
 
 
 @settings(max_examples=40)
-@given(st.integers(0, 2**32 - 1), st.lists(st.integers(1, 64), max_size=3))
-def test_it_answers_as_the_policy(seed: int, hidden: list[int]) -> None:
-    policy = random_policy(seed, tuple(hidden))
+@given(st.integers(0, 2**32 - 1), st.lists(st.integers(1, 64), max_size=3), st.sampled_from([1, 3]))
+def test_it_answers_as_the_policy(seed: int, hidden: list[int], history: int) -> None:
+    policy = random_policy(seed, tuple(hidden), history=history)
     model = onnx_export.exported(policy, make_manifest(policy, {}))
-    values = np.random.default_rng(seed).uniform(-1.0, 1.0, (50, 4)) * [0.3, 0.3, 0.3, 0.01]
+    reach = [0.3, 0.3, 0.3, 0.01] * history
+    values = np.random.default_rng(seed).uniform(-1.0, 1.0, (50, 4 * history)) * reach
     assert run(model, values) == pytest.approx(policy.residuals(values), abs=1e-5 * 2e-5)
     assert run(model, values[:1]).shape == (1, 3)
+
+
+def test_its_input_is_as_wide_as_the_history() -> None:
+    policy = random_policy(history=3)
+    model = onnx.load_from_string(onnx_export.exported(policy, make_manifest(policy, {})))
+    (port,) = model.graph.input
+    assert [d.dim_param or d.dim_value for d in port.type.tensor_type.shape.dim] == ["batch", 12]
 
 
 def test_the_file_stands_beside_the_policy_and_says_what_it_is(tmp_path: Path) -> None:

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from controllers.messages import Observation
 from drivers.contract.messages import Pose
+from learning.policy.expert import Expert
 from learning.policy.inputs import READINGS, Input, Output
-from learning.policy.policy import Expert, Layer, Policy
+from learning.policy.policy import Layer, Policy
 from tests.learning.policy.policies import EXPERT, inputs, random_policy, zero_policy
 
 SEEN = Observation(
@@ -53,6 +54,8 @@ def test_every_input_reads_its_own_number() -> None:
         "torque_y": -2e-3,
         "torque_z": 3e-3,
         "depth": 1.5e-3,
+        "turn_x": 1e-3,
+        "turn_y": 2e-3,
         "displacement_x": 4e-6,
         "displacement_y": -5e-6,
         "displacement_z": 1.8e-3,
@@ -60,6 +63,23 @@ def test_every_input_reads_its_own_number() -> None:
     assert {name: reading.read(SEEN) for name, reading in READINGS.items()} == expected
     names = tuple(reversed(expected))
     assert random_policy(seen=names).read(SEEN) == [expected[name] for name in names]
+
+
+def test_all_inputs_of_the_newest_observation_come_first() -> None:
+    """Two inputs of scales 2 and 4, seen three times: each weight meets its own value."""
+    policy = Policy(
+        (Input("force_x", 2.0), Input("depth", 4.0)),
+        (Output("step_x", 1.0),),
+        10.0,
+        (Layer(np.array([[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]]), np.zeros(1)),),
+        EXPERT,
+        history=3,
+    )
+    assert policy.n_values == 6
+    values = [2.0, 8.0, 6.0, 16.0, 10.0, 24.0]
+    expected = math.tanh(0.123456)
+    assert policy.residual(values) == pytest.approx([expected], rel=1e-6)
+    assert policy.residuals([values])[0] == pytest.approx([expected], rel=1e-6)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.integers(1, 40), st.floats(0.1, 10.0))
@@ -100,6 +120,13 @@ def test_what_is_not_a_number_is_not_hidden() -> None:
 def test_inputs_of_another_shape(values: list[float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         random_policy().residual(values)
+
+
+def test_inputs_of_fewer_observations_than_the_history() -> None:
+    with pytest.raises(ValueError, match=r"inputs have shape \(4,\); it must be \(12,\)"):
+        random_policy(history=3).residual([0.0] * 4)
+    with pytest.raises(ValueError, match=r"inputs have shape \(2, 4\); it must be \(n, 12\)"):
+        random_policy(history=3).residuals(np.zeros((2, 4)))
 
 
 @pytest.mark.parametrize("shape", [(4,), (2, 3), (1, 1, 4)])
@@ -165,6 +192,10 @@ INFINITE = np.full((3, 4), 1e39)
         ({"expert": EXPERT._replace(gain_m_N=-1.0)}, "gain_m_N of the expert is -1.0"),
         ({"expert": EXPERT._replace(axial_step_m=-1e-9)}, "axial_step_m of the expert is -1e-09"),
         ({"expert": EXPERT._replace(axial_step_m=6.1e-5)}, "at most 6e-05, the step box along z"),
+        ({"history": 0}, "history is 0; it must be a whole number from 1 to 64"),
+        ({"history": 65}, "history is 65; it must be a whole number from 1 to 64"),
+        ({"history": 2.0}, r"history is 2\.0; it must be a whole number from 1 to 64"),
+        ({"history": 2}, r"weight of layer 0 has shape \(3, 4\); it must be \(outputs, 8\)"),
         ({"expert": Expert(1e-4, 5e-5, (2e-5, 0.0, 6e-5))}, r"step_box_m \(y\) of the expert is 0"),
     ],
 )

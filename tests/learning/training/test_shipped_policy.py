@@ -8,8 +8,9 @@ import pytest
 
 from learning.environments import DualPegConfig
 from learning.environments.core import DualPegCore
+from learning.policy.expert import Expert
 from learning.policy.file import read_policy
-from learning.policy.policy import Expert, Policy
+from learning.policy.policy import Policy
 from learning.training.checkpoint import configuration
 from learning.training.evaluation import Insertions, insert_all
 from learning.training.plan import load_plan

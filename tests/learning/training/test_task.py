@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from learning.environments import PAPER, Outcome
-from learning.policy.policy import Expert
+from learning.policy.expert import Expert
 from learning.task import InsertionTask, Start
 
 UM = 1e-6
