@@ -1,6 +1,6 @@
 """How long the cell waits for a policy's answer, next to onnxruntime and torch, side by side.
 
-One observation, one CPU core, one thread each. Every row but the last two answers with the same
+One answer, one CPU core, one thread each. Every row but the last two answers with the same
 residual from the same list of numbers; `SkillController.step` does all from observation to move.
 Run from the repository's root: python benchmarks/policy.py
 """
@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from importlib.metadata import version
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -28,23 +29,27 @@ from learning.skill_controller import SkillController
 sys.path.append(str(Path(__file__).parents[1]))
 from tests.learning.policy.policies import random_policy
 
-WIDTHS = (64, 256)
-"""Of two hidden layers."""
+CASES = ((64, 1), (256, 1), (64, 8))
+"""Width of two hidden layers, and how many observations the network sees."""
 WRENCH = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")
-SEEN = (*WRENCH, "depth", "displacement_x", "displacement_y", "displacement_z")
+SEEN = (*WRENCH, "depth", "turn_x", "turn_y", "displacement_x", "displacement_y")
 ANSWERED = ("step_x", "step_y", "step_z", "turn_x", "turn_y")
 ROUNDS = 20
 CALLS = 2_000
 BUDGET_US = 50.0
-OBSERVATION = Observation(
-    0,
-    3,
-    (0.01, -0.02, 0.3, 1e-3, -2e-3, 3e-3),
-    (0.0,) * 6,
-    Pose((1e-6, -2e-6, 1.5e-3)),
-    (4e-6, -5e-6, 1.8e-3),
-    Pose((1e-6, -2e-6, 1.5e-3)),
-)
+OBSERVATIONS = [
+    Observation(
+        0,
+        step,
+        (0.01, -0.02, 0.3, 1e-3, -2e-3, 3e-3),
+        (0.0,) * 6,
+        Pose((1e-6, -2e-6, 1.5e-3), (2e-4, -3e-4, 0.0)),
+        (4e-6, -5e-6, 1.8e-3),
+        Pose((1e-6, -2e-6, 1.5e-3), (2e-4, -3e-4, 0.0)),
+    )
+    for step in (3, 4)
+]
+"""Of one step and the next, so that each is a new frame."""
 Call = Callable[[], object]
 
 
@@ -67,7 +72,7 @@ def with_torch(policy: Policy, values: list[float]) -> Call:
         linear.load_state_dict({"weight": torch.tensor(weight), "bias": torch.tensor(bias)})
         modules += [linear, torch.nn.ReLU()]
     network = torch.nn.Sequential(*modules[:-1], torch.nn.Tanh())
-    inputs = torch.tensor([scale for _, scale in policy.inputs])
+    inputs = torch.tensor([scale for _, scale in policy.inputs] * policy.history)
     outputs = torch.tensor([scale for _, scale in policy.outputs])
 
     def call() -> object:
@@ -104,9 +109,10 @@ def main() -> None:
     print(f"onnxruntime {version('onnxruntime')}, torch {version('torch')}; on core {core} alone")
     print(f"{ROUNDS} rounds of {CALLS} calls, taking turns; each round has a p99 of its own: their")
     print("median holds what else ran on the core, the quietest round hardly any of it")
-    for width in WIDTHS:
-        policy = random_policy(0, (width, width), SEEN, ANSWERED)
-        values = policy.read(OBSERVATION)
+    for width, history in CASES:
+        policy = random_policy(0, (width, width), SEEN, ANSWERED, history=history)
+        values = policy.read(OBSERVATIONS[0]) * history
+        observations = cycle(OBSERVATIONS)
         controller = SkillController(policy)
         calls: dict[str, Call] = {
             "Policy.residual": lambda policy=policy, values=values: policy.residual(values),
@@ -117,8 +123,13 @@ def main() -> None:
         for name, call in calls.items():
             if not np.allclose(np.asarray(call()), expected, rtol=1e-3, atol=1e-9):
                 raise SystemExit(f"{name} answers {call()}, not {expected}")
-        calls["SkillController.step"] = lambda controller=controller: controller.step(OBSERVATION)
-        print(f"{len(SEEN)} inputs, two hidden layers of {width}, {len(ANSWERED)} outputs")
+        calls["SkillController.step"] = lambda controller=controller, seen=observations: (
+            controller.step(next(seen))
+        )
+        print(
+            f"{len(SEEN)} inputs of {history} observations, two hidden layers of {width}, "
+            f"{len(ANSWERED)} outputs"
+        )
         heads = f"{'p50 us':>9}{'p99 us':>9}{'quietest p99':>14}{'largest':>9}"
         print(f"{'':<24}{heads}  p50 by Policy.residual's")
         found = durations_us(calls)
