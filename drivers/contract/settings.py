@@ -6,7 +6,8 @@ are checked in the written unit; the conversion happens once, here.
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, TypeVar
+from itertools import chain
+from typing import Annotated, TypeVar, get_args
 
 from annotated_types import Gt
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
@@ -52,7 +53,10 @@ class Scale:
 def written(settings: type[Settings], attribute: str, si_value: float | tuple[float, ...]) -> str:
     """Return `key = value` for an attribute of `settings`, in the key's unit."""
     field = settings.model_fields[attribute]
-    scale = next((m for m in field.metadata if isinstance(m, Scale)), ONE)
+    # What may also be None has its unit within the union.
+    options = [getattr(option, "__metadata__", ()) for option in get_args(field.annotation)]
+    known = chain(field.metadata, *options)
+    scale = next((m for m in known if isinstance(m, Scale)), ONE)
     if isinstance(si_value, tuple):
         shown = f"[{', '.join(f'{v:.12g}' for v in scale.to_written(si_value))}]"
     else:

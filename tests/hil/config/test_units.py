@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controllers.limits import Limits
+from controllers.limits import Limits, PartLimits
 from drivers.contract.settings import DEGREES, KILO, MICRO, MILLI, NANO, PERCENT, Scale, written
 
 
@@ -45,3 +45,17 @@ def test_there_and_back(scale: Scale, value: float) -> None:
 )
 def test_written(attribute: str, value: float | tuple[float, ...], expected: str) -> None:
     assert written(Limits, attribute, value) == expected
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value", "expected"),
+    [
+        ("angular_speed_rad_s", math.radians(0.5), "angular_speed_limit_deg_s = 0.5"),
+        ("step_m", (2e-5, 2e-5, 6e-5), "step_box_um = [20, 20, 60]"),
+        ("force_rate_N_s", 40.0, "force_rate_limit_N_s = 40"),
+    ],
+)
+def test_written_what_may_be_left_out(
+    attribute: str, value: float | tuple[float, ...], expected: str
+) -> None:
+    assert written(PartLimits, attribute, value) == expected
