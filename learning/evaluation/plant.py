@@ -81,15 +81,19 @@ def _plant(plants: Plants, index: int) -> Plant:
     )
 
 
-def _refuse_effects(plants: Plants) -> None:
+def unsteady_effects(plants: Plants) -> dict[str, bool]:
+    """Whether plants have each of the effects that insertions step by step do not have, by key."""
     sensor, arm = plants.sensor, plants.arm
-    effects = {
+    return {
         "arm (drift or vibration)": bool(arm.thermal or np.any(arm.walk_density) or arm.modes),
         "force_sensor.drift": bool(sensor.drift.corners_Hz),
         "force_sensor.latency": sensor.latency_samples > 0.0,
         "force_sensor.resolution": bool(np.any(sensor.resolution)),
     }
-    if names := [name for name, is_on in effects.items() if is_on]:
+
+
+def _refuse_effects(plants: Plants) -> None:
+    if names := [name for name, is_on in unsteady_effects(plants).items() if is_on]:
         raise ValueError(
             f"plants have {', '.join(names)}; a trial is quasi-static and has none of these: leave "
             "them out"

@@ -1,0 +1,1 @@
+"""Analytic policy gradient: a skill learned by the gradient through the contact simulation."""

@@ -1,0 +1,77 @@
+"""Trains a skill by the gradient through the contact simulation, and writes the policy."""
+
+from pathlib import Path
+from typing import Annotated
+
+import torch
+import typer
+from pydantic import JsonValue
+from rich.console import Console
+
+from drivers.contract.errors import TenonError
+from learning.analytic.display import Display
+from learning.analytic.judged import judged, metrics
+from learning.analytic.plan import load_analytic
+from learning.analytic.trainer import AnalyticTrainer
+from learning.command import make_folder, refused
+from learning.evaluation.metrics import Measured
+from learning.policy.file import SUFFIX, save_policy
+
+
+def pretrain_analytic(
+    config: Annotated[Path, typer.Option(help="The training (YAML): plants, policy, updates.")],
+    out: Annotated[Path, typer.Option(help="Folder to write to.")],
+    seed: Annotated[
+        int, typer.Option(min=0, help="Seed of all chance: same seed, same policy.")
+    ] = 0,
+) -> None:
+    """Train a skill and write its policy, with TensorBoard scalars on the way.
+
+    Exit code: 0 done, 2 a file that cannot be used or written, 130 interrupted.
+    """
+    try:
+        _pretrain(config, out, seed)
+    except TenonError as error:
+        raise refused(error) from error
+
+
+def _pretrain(config: Path, out: Path, seed: int) -> None:
+    # Threads only slow networks of this size down.
+    torch.set_num_threads(1)
+    plan = load_analytic(config)
+    make_folder(out)
+    console = Console()
+    trainer = AnalyticTrainer(plan, seed)
+    with Display(console, out / "tensorboard", plan.settings.updates) as display:
+        while not trainer.is_done:
+            display.show(trainer.update())
+    policy = trainer.policy()
+    figures = judged(policy, plan)
+    path = out / f"policy{SUFFIX}"
+    about: dict[str, JsonValue] = {
+        "trainer": "learning/pretrain_analytic.py",
+        "seed": seed,
+        "updates": len(trainer.updates),
+        "insertions": trainer.insertions,
+        "training_steps": trainer.steps,
+        "configuration": plan.configuration(),
+        "metrics": {**metrics(figures)},
+    }
+    save_policy(policy, path, about)
+    _report(console, figures, path)
+
+
+def _report(console: Console, figures: Measured, policy: Path) -> None:
+    inserted, values = int(figures.is_success.sum()), figures.values
+    lines = (
+        f"Inserted {inserted} of {len(figures.is_success)} plants that were not trained on, "
+        f"in {values['steps'].mean():.1f} steps on average.",
+        f"Radial force {1e3 * values['radial_mean'].mean():.2f} mN on average, "
+        f"{1e3 * values['radial_peak'].max():.0f} mN at most.",
+        f"Policy: {policy} and {policy.with_suffix('.onnx').name} beside it",
+    )
+    console.print("\n".join(lines), soft_wrap=True, markup=False, highlight=False)
+
+
+if __name__ == "__main__":
+    typer.run(pretrain_analytic)
