@@ -125,7 +125,8 @@ def test_the_same_seed_gives_the_same_run_and_another_seed_another() -> None:
 
 def test_an_unknown_controller_is_refused() -> None:
     with pytest.raises(
-        ConfigurationError, match="controller 'ddpg' is not valid: one of expert, look_ahead, p"
+        ConfigurationError,
+        match="controller 'ddpg' is not valid: one of expert, extended, look_ahead, p",
     ):
         make_cell("ddpg")
 

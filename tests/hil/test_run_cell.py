@@ -95,7 +95,8 @@ def test_in_real_time_the_same_command_inserts_a_part(tmp_path: Path, controller
         (("--config", "config/nowhere.yaml"), "error: config/nowhere.yaml: cannot be read"),
         (
             ("--controller", "ddpg"),
-            "error: controller 'ddpg' is not valid: one of expert, look_ahead, p, skill is",
+            "error: controller 'ddpg' is not valid: one of expert, extended, look_ahead, p, "
+            "skill is",
         ),
         (("--part", "config/limits.yaml"), "error: config/limits.yaml: "),
         (("--log", "Makefile/r.mcap"), "error: cannot create the folder Makefile: File exists"),

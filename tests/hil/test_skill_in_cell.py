@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from controllers.control_loop import Subscriber
-from controllers.messages import Sent, SkillPhase
+from controllers.messages import Sent, Severity, SkillPhase
 from drivers.contract.clock import ManualClock
 from drivers.contract.messages import Pose
 from hil.cell import Cell
@@ -21,6 +21,7 @@ from hil.metadata import metadata
 from hil.recorder import Recorder
 from learning.policy.file import read_policy, save_policy
 from learning.policy.policy import Policy
+from tests.hil.watched_cell import make_cell
 from tests.learning.policy.policies import EXPERT, random_policy, zero_policy
 
 CONFIG = Path(__file__).parents[2] / "config"
@@ -97,3 +98,16 @@ def test_the_log_says_which_policy_ran(tmp_path: Path) -> None:
     assert record["sha256"] == hashlib.sha256(content).hexdigest()
     assert json.loads(record["manifest"])["about"] == {"seed": 7}
     assert "policy" not in metadata(config, "expert", 1, 1, real_time=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("part", "steps"), [("paper_online", 66), ("paper_simulation", 52)])
+def test_the_extended_skill_inserts_gently(part: str, steps: int) -> None:
+    """Though this cell's stage and sensor have errors that it was not trained with."""
+    cell, watcher, _ = make_cell("extended", part=part)
+    outcomes = [cell.insert_part(number) for number in range(1, 6)]
+    assert [o.phase for o in outcomes] == [SkillPhase.DONE] * 5
+    assert all(o.steps <= steps for o in outcomes)
+    inside = watcher.force[np.array(watcher.depths) > 0.0]
+    assert np.abs(inside).max() < 0.044
+    assert max(watcher.severities) < Severity.HOLD

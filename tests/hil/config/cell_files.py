@@ -94,6 +94,7 @@ def shipped() -> Files:
     for device, keys in EFFECTS.items():
         files[CELL][device].update(copy.deepcopy(keys))
     files[CELL]["controllers"]["skill"] = {"kind": "skill", "policy": f"../{POLICY}"}
+    del files[CELL]["controllers"]["extended"]  # the same kind again, with a policy of its own
     return files
 
 
