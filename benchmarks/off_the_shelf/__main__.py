@@ -16,11 +16,20 @@ import typer
 from benchmarks.machine import describe
 from benchmarks.off_the_shelf import result
 from benchmarks.off_the_shelf.quality import STATES
-from benchmarks.off_the_shelf.runs import BATCHED, OURS, PAPER, Run, Task, done, write_curves
+from benchmarks.off_the_shelf.runs import (
+    ANALYTIC,
+    FORMULATIONS,
+    OURS,
+    PAPER,
+    RESIDUAL,
+    Run,
+    Task,
+    done,
+    write_curves,
+)
 from learning.policy.file import save_policy
 
 ALGORITHMS = ("ddpg", "td3", "sac")
-FORMULATIONS = ("direct", "residual")
 
 
 def main(
@@ -30,14 +39,14 @@ def main(
     steps: Annotated[int, typer.Option(min=1, help="Steps that the library trains for.")] = 20_000,
     every: Annotated[int, typer.Option(min=1, help="Steps from one judgement to the next.")] = 500,
     every_round: Annotated[
-        int, typer.Option(min=1, help="The same in ours: insertions, or steps of all at once.")
+        int, typer.Option(min=1, help="The same in ours: insertions, or updates.")
     ] = 2,
     seeds: Annotated[int, typer.Option(min=1)] = 3,
     config: Annotated[Path, typer.Option(help="Our training (YAML).")] = Path(
         "config/training/paper.yaml"
     ),
-    batched: Annotated[Path, typer.Option(help="The same, batched (YAML).")] = Path(
-        "config/training/batched.yaml"
+    analytic: Annotated[Path, typer.Option(help="Our analytic training (YAML).")] = Path(
+        "config/training/paper_analytic.yaml"
     ),
     algorithm: Annotated[list[str] | None, typer.Option(help="Of the library; all.")] = None,
     formulation: Annotated[list[str] | None, typer.Option(help="direct, residual; both.")] = None,
@@ -50,8 +59,8 @@ def main(
     print(f"judged from {STATES} start poses that no training sees; library: {steps} steps")
     runs: list[Run] = []
     for seed in range(seeds):
-        tasks = [Task(PAPER, "residual", seed, 0, every_round, config)]
-        tasks += [Task(BATCHED, "residual", seed, 0, every_round, batched)]
+        tasks = [Task(PAPER, RESIDUAL, seed, 0, every_round, config)]
+        tasks += [Task(ANALYTIC, f, seed, 0, every_round, analytic) for f in FORMULATIONS]
         tasks += [Task(a, f, seed, steps, every, config) for f in forms for a in algorithms]
         for task in tasks:
             runs.append(done(task))

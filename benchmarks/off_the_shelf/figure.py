@@ -5,24 +5,24 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from benchmarks.off_the_shelf.runs import OURS, Run, by_name
+from benchmarks.off_the_shelf.runs import DIRECT, RESIDUAL, Run, by_name
 from learning.drawing import drawing
 
 COLOURS = {
     "paper": "#000000",
-    "batched": "#CC79A7",
+    "analytic": "#CC79A7",
     "ddpg": "#0072B2",
     "td3": "#D55E00",
     "sac": "#009E73",
 }
 NAMES = {
     "paper": "Tenon, Algorithm 1",
-    "batched": "Tenon, batched",
+    "analytic": "Tenon, analytic gradient",
     "ddpg": "DDPG",
     "td3": "TD3",
     "sac": "SAC",
 }
-STYLES = {"direct": "-", "residual": (0, (4, 1.5))}
+STYLES = {DIRECT: "-", RESIDUAL: (0, (4, 1.5))}
 FIRST_S = 0.1
 """Where the axis of time begins; what is there before training is drawn at its edge."""
 
@@ -44,7 +44,8 @@ def draw(runs: Sequence[Run]) -> Figure:
         lower.set_ylabel("1 - score (better is above)")
         lower.set_yscale("log")
         lower.set_yticks(
-            (1.0, 0.3, 0.1, 0.05, 0.03, 0.02), ("1", "0.3", "0.1", "0.05", "0.03", "0.02")
+            (1.0, 0.3, 0.1, 0.05, 0.03, 0.02, 0.01),
+            ("1", "0.3", "0.1", "0.05", "0.03", "0.02", "0.01"),
         )
         lower.minorticks_off()
         lower.invert_yaxis()
@@ -66,7 +67,5 @@ def draw(runs: Sequence[Run]) -> Figure:
 
 
 def _label(run: Run) -> str:
-    name = NAMES[run.task.trainer]
-    if run.task.trainer in OURS:
-        return name
-    return f"{name}, {'with expert' if run.task.formulation == 'residual' else 'as registered'}"
+    how = "with expert" if run.task.formulation == RESIDUAL else "as registered"
+    return f"{NAMES[run.task.trainer]}, {how}"

@@ -55,15 +55,15 @@ class Formulation:
     """Whether nothing is to be gained after the end of an episode."""
 
 
-DIRECT = Formulation(PAPER, Expert(0.0, 0.0, PAPER.step_box_m), PAPER.step_box_m, ends=True)
+AS_REGISTERED = Formulation(PAPER, Expert(0.0, 0.0, PAPER.step_box_m), PAPER.step_box_m, ends=True)
 """The registered environment as it is: the action is the whole step."""
 
 
 def residual(plan: Plan) -> Formulation:
-    """Return the problem that our trainer has: expert, range, noise and ends of a plan."""
+    """Return the environment with the expert, the range and the ends of a plan."""
     settings = plan.settings
     return Formulation(
-        plan.noisy_environment,
+        plan.environment,
         plan.expert,
         settings.residual.range_m,
         ends=settings.ddpg.terminal_mask,
@@ -107,7 +107,7 @@ def make(algorithm: str, form: Formulation, seed: int, buffer_size: int) -> Mode
     """Return an untrained model, on one thread of the processor."""
     torch.set_num_threads(1)
     env = gymnasium.make(ENVIRONMENT, config=form.environment)
-    if form is not DIRECT:
+    if form is not AS_REGISTERED:
         env = ExpertBeside(env, form)
     settings: dict[str, Any] = {
         "policy_kwargs": {"net_arch": list(HIDDEN)},

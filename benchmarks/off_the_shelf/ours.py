@@ -1,11 +1,15 @@
 """Our trainers, judged on their way as the library's algorithms are."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import torch
 
 from benchmarks.off_the_shelf.quality import Recorder
-from learning.batched import BatchedTrainer, load_batched
+from benchmarks.off_the_shelf.runs import DIRECT
+from learning.analytic.plan import AnalyticPlan, load_analytic
+from learning.analytic.trainer import AnalyticTrainer
+from learning.policy.expert import Expert
 from learning.training.plan import load_plan
 from learning.training.policy_of import policy_of
 from learning.training.trainer import Trainer
@@ -26,15 +30,25 @@ def train_paper(config: Path, seed: int, every: int, began: float) -> Recorder:
     return recorder
 
 
-def train_batched(config: Path, seed: int, every: int, began: float) -> Recorder:
-    """Make all steps of a batched training and judge at first and after `every` so many."""
+def train_analytic(config: Path, formulation: str, seed: int, every: int, began: float) -> Recorder:
+    """Make all updates of an analytic training and judge at first and after `every` so many."""
     torch.set_num_threads(1)
-    batched = load_batched(config)
-    trainer = BatchedTrainer(batched, seed)
+    plan = load_analytic(config)
+    if formulation == DIRECT:
+        plan = without_expert(plan)
+    trainer = AnalyticTrainer(plan, seed)
     recorder = Recorder(began)
-    recorder.judge(0, policy_of(trainer.ddpg.actor, batched.plan))
+    recorder.judge(0, trainer.policy())
     while not trainer.is_done:
-        trainer.play()
-        if trainer.steps % every == 0 or trainer.is_done:
-            recorder.judge(trainer.replay.added, policy_of(trainer.ddpg.actor, batched.plan))
+        trainer.update()
+        if len(trainer.updates) % every == 0 or trainer.is_done:
+            recorder.judge(trainer.steps, trainer.policy())
     return recorder
+
+
+def without_expert(plan: AnalyticPlan) -> AnalyticPlan:
+    """Return the plan with a policy whose answer is the whole step."""
+    box_m = plan.settings.trial.step_box_m
+    residual = plan.settings.residual.model_copy(update={"range_m": box_m})
+    settings = plan.settings.model_copy(update={"residual": residual})
+    return replace(plan, settings=settings, expert=Expert(0.0, 0.0, box_m))

@@ -15,7 +15,7 @@ from learning.policy.policy import Policy
 from simulator.checks import FloatArray
 
 STATES = 100
-_HELD_OUT = np.uint64(20_261_125)
+_HELD_OUT = np.uint64(20_261_126)
 """Key of the start poses: no training draws from it."""
 _RUNNING = int(Outcome.RUNNING)
 

@@ -17,7 +17,7 @@ def run_line(run: Run) -> str:
     """What a training came to."""
     last = run.points[-1]
     return (
-        f"{run.task.name:<17}seed {run.task.seed}: {last.training_steps} steps in "
+        f"{run.task.name:<19}seed {run.task.seed}: {last.training_steps} steps in "
         f"{last.wall_s:.1f} s ({last.cpu_s:.1f} s of CPU, start-up {run.startup_s:.1f} s); "
         f"best {described(run.best)}; last {described(last)}"
     )
@@ -42,12 +42,12 @@ def lines(runs: Sequence[Run]) -> Iterator[str]:
     yield ""
     yield "Median wall-clock time over seeds to all start poses inserted, and to a score (then with"
     yield "all inserted), in s; - is never in half of the seeds:"
-    yield f"{'':<17}{'inserted':>9}" + "".join(f"{level:>8.2f}" for level in LEVELS)
+    yield f"{'':<19}{'inserted':>9}" + "".join(f"{level:>8.2f}" for level in LEVELS)
     for name, group in by_name(runs):
         goals = [_goal(0.0), *map(_goal, LEVELS)]
         times = [median(_seconds(run.until(goal)) for run in group) for goal in goals]
         cells = ["-" if time == inf else f"{time:.1f}" for time in times]
-        yield f"{name:<17}{cells[0]:>9}" + "".join(f"{cell:>8}" for cell in cells[1:])
+        yield f"{name:<19}{cells[0]:>9}" + "".join(f"{cell:>8}" for cell in cells[1:])
 
 
 def _against(theirs: Sequence[Run], ours: Sequence[Run]) -> Iterator[str]:

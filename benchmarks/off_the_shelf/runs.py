@@ -12,9 +12,12 @@ from typing import NamedTuple
 from benchmarks.off_the_shelf.quality import Point, Quality
 from learning.policy.policy import Policy
 
-PAPER, BATCHED = "paper", "batched"
-OURS = (PAPER, BATCHED)
-"""Our trainers: Algorithm 1, and many insertions at once."""
+PAPER, ANALYTIC = "paper", "analytic"
+OURS = (PAPER, ANALYTIC)
+"""Our trainers: Algorithm 1, and the analytic policy gradient."""
+DIRECT, RESIDUAL = "direct", "residual"
+FORMULATIONS = (DIRECT, RESIDUAL)
+"""The whole step, or a correction of our expert's."""
 
 
 class Task(NamedTuple):
@@ -27,7 +30,7 @@ class Task(NamedTuple):
     length: int
     """Steps of the library's; ours are as long as their files say."""
     every: int
-    """Steps (Algorithm 1: insertions) from one judgement to the next."""
+    """From one judgement to the next: steps; Algorithm 1: insertions; analytic: updates."""
     config: Path
     """Of our training; its problem is also that of `residual`."""
 
@@ -65,15 +68,18 @@ def done(task: Task) -> Run:
 def _train(task: Task, began: float) -> Run:
     # What one trainer loads must not weigh on the other's start.
     if task.trainer in OURS:
-        from benchmarks.off_the_shelf.ours import train_batched, train_paper
+        from benchmarks.off_the_shelf.ours import train_analytic, train_paper
 
-        train_ours = train_paper if task.trainer == PAPER else train_batched
-        recorder = train_ours(task.config, task.seed, task.every, began)
+        if task.trainer == PAPER:
+            recorder = train_paper(task.config, task.seed, task.every, began)
+        else:
+            recorder = train_analytic(task.config, task.formulation, task.seed, task.every, began)
     else:
-        from benchmarks.off_the_shelf.library import DIRECT, residual, train
+        from benchmarks.off_the_shelf.library import AS_REGISTERED, residual, train
         from learning.training.plan import load_plan
 
-        form = DIRECT if task.formulation == "direct" else residual(load_plan(task.config))
+        is_direct = task.formulation == DIRECT
+        form = AS_REGISTERED if is_direct else residual(load_plan(task.config))
         recorder = train(task.trainer, form, task.seed, task.length, task.every, began)
     if recorder.best is None:
         raise ValueError(f"{task.name} was never judged")

@@ -14,9 +14,11 @@ import pytest
 import torch
 
 from benchmarks.off_the_shelf import library, result
-from benchmarks.off_the_shelf.library import ALGORITHMS, DIRECT, ExpertBeside, Formulation
+from benchmarks.off_the_shelf.library import ALGORITHMS, AS_REGISTERED, ExpertBeside, Formulation
+from benchmarks.off_the_shelf.ours import without_expert
 from benchmarks.off_the_shelf.quality import Point, Quality, Recorder, quality_of, start_poses
 from benchmarks.off_the_shelf.runs import OURS, Run, Task
+from learning.analytic.plan import load_analytic
 from learning.environments import PAPER, DualPegEnv, Outcome
 from learning.policy.expert import Expert
 from learning.policy.file import load_policy
@@ -39,7 +41,7 @@ def one_thread() -> Iterator[None]:
     torch.set_num_threads(before)
 
 
-@pytest.mark.parametrize("form", [DIRECT, BESIDE], ids=["direct", "beside an expert"])
+@pytest.mark.parametrize("form", [AS_REGISTERED, BESIDE], ids=["direct", "beside an expert"])
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_a_converted_actor_answers_as_the_model_does(algorithm: str, form: Formulation) -> None:
     model = library.make(algorithm, form, seed=1, buffer_size=10)
@@ -57,20 +59,20 @@ def test_a_converted_actor_answers_as_the_model_does(algorithm: str, form: Formu
 
 
 def test_the_registered_environment_has_no_expert() -> None:
-    assert Formulation(PAPER, WHOLE_STEP, (20e-6, 20e-6, 60e-6), ends=True) == DIRECT
+    assert Formulation(PAPER, WHOLE_STEP, (20e-6, 20e-6, 60e-6), ends=True) == AS_REGISTERED
 
 
 def test_another_network_is_refused() -> None:
-    model = library.make("td3", DIRECT, seed=1, buffer_size=10)
+    model = library.make("td3", AS_REGISTERED, seed=1, buffer_size=10)
     model.actor.mu[1] = torch.nn.Tanh()
     with pytest.raises(ValueError, match="the actor is Linear, Tanh, Linear"):
-        library.converted(model, DIRECT)
+        library.converted(model, AS_REGISTERED)
 
 
-def test_the_problem_beside_an_expert_is_our_trainers(tmp_path: Path) -> None:
+def test_the_environment_beside_an_expert_is_our_task(tmp_path: Path) -> None:
     plan = short_plan(tmp_path)
     form = library.residual(plan)
-    assert form.environment.force_noise_N == pytest.approx((0.014, 0.02, 0.2))
+    assert form.environment == PAPER
     insertion = InsertionTask(form.environment, form.expert, form.range_m)
     env = ExpertBeside(gymnasium.make(library.ENVIRONMENT, config=form.environment), form)
     pose = np.array([6e-6, 2e-6, 2.0e-3, 1e-3, 0.0])
@@ -89,6 +91,12 @@ def test_the_problem_beside_an_expert_is_our_trainers(tmp_path: Path) -> None:
         assert not is_terminal
         assert ended == (step.outcome != Outcome.RUNNING)
     assert step.outcome == Outcome.INSERTED
+
+
+def test_without_an_expert_our_answer_is_the_whole_step() -> None:
+    plan = without_expert(load_analytic(Path("config/training/paper_analytic.yaml")))
+    assert plan.expert == WHOLE_STEP
+    assert [scale for _, scale in plan.settings.residual.outputs()] == [20e-6, 20e-6, 60e-6]
 
 
 def test_ends_are_told_where_our_trainer_is_told(tmp_path: Path) -> None:
@@ -177,7 +185,7 @@ THEIRS = (
 def test_time_to_the_quality_of_their_best(reached_s: tuple[float | None], said: str) -> None:
     ours = [
         run(
-            "batched",
+            "analytic",
             seed,
             (0.0, 1.0, 0.9 if at == 0.0 else 0.5),
             (at or 1.0, 1.0, 0.95 if at else 0),
@@ -186,14 +194,14 @@ def test_time_to_the_quality_of_their_best(reached_s: tuple[float | None], said:
     ]
     lines = [*result.lines([*ours, *THEIRS])]
     assert "Best of the library, direct: td3 direct, seed 0:" in lines
-    assert f"  batched residual: {said}" in lines
+    assert f"  analytic residual: {said}" in lines
 
 
 def test_table_of_times() -> None:
-    lines = [*result.lines([run("batched", 0, (0.0, 1.0, 0.91), (7.0, 1.0, 0.95)), *THEIRS])]
-    rows = {line[:17].strip(): line.split()[2:] for line in lines[-3:]}
+    lines = [*result.lines([run("analytic", 0, (0.0, 1.0, 0.91), (7.0, 1.0, 0.95)), *THEIRS])]
+    rows = {line[:19].strip(): line.split()[2:] for line in lines[-3:]}
     assert rows == {
-        "batched residual": ["0.0", "0.0", "0.0", "0.0", "0.0", "7.0", "7.0", "-", "-"],
+        "analytic residual": ["0.0", "0.0", "0.0", "0.0", "0.0", "7.0", "7.0", "-", "-"],
         "td3 direct": ["60.0", "60.0", "60.0", "60.0", "60.0", "-", "-", "-", "-"],
         "sac direct": ["50.0", "50.0", "50.0", "-", "-", "-", "-", "-", "-"],
     }
@@ -202,11 +210,13 @@ def test_table_of_times() -> None:
 def test_the_whole_comparison(tmp_path: Path) -> None:
     out = tmp_path / "out"
     config = short_file(tmp_path, rounds=2)
-    batched = tmp_path / "batched.yaml"
-    shipped = Path("config/training/batched.yaml").read_text()
-    batched.write_text(shipped.replace("steps: 150", "steps: 3").replace("paper.", "short."))
+    analytic = tmp_path / "analytic.yaml"
+    shipped = Path("config/training/paper_analytic.yaml").read_text()
+    plants = Path("config/randomisation/nominal.yaml").resolve()
+    short = shipped.replace("../randomisation/nominal.yaml", str(plants))
+    analytic.write_text(short.replace("updates: 100", "updates: 2"))
     options = "--steps 120 --every 60 --seeds 1 --algorithm sac"
-    files = f"--config {config} --batched {batched} --out {out}"
+    files = f"--config {config} --analytic {analytic} --out {out}"
     command = f"-m benchmarks.off_the_shelf {options} --every-round 1 {files}"
     done = subprocess.run(
         [sys.executable, *command.split()], capture_output=True, text=True, timeout=600
@@ -215,7 +225,7 @@ def test_the_whole_comparison(tmp_path: Path) -> None:
     assert done.stdout.startswith("machine: ")
     assert f"command: python -m benchmarks.off_the_shelf {options}" in done.stdout
     assert re.search(r"sac residual +seed 0: 120 steps in [\d.]+ s", done.stdout)
-    assert (out / "curves.csv").read_text().count("\n") == 1 + 3 + 4 + 2 * 3
+    assert (out / "curves.csv").read_text().count("\n") == 1 + 3 + 2 * 3 + 2 * 3
     for name in ("sac-direct", "sac-residual"):
         policy = load_policy(out / f"{name}.safetensors")
         assert policy.expert.axial_step_m == (50e-6 if "residual" in name else 0.0)
