@@ -40,7 +40,8 @@ def controller_factory(
     if isinstance(choice, LookAheadControllerSettings):
         return look_ahead_factory(choice, config, name, sensor_noise, generator)
     policy = choice.stored.policy
-    if problem := _too_far(policy, config.limits):
+    sensor_m = config.force_sensor.settings.origin_m
+    if problem := _too_far(policy, config.limits) or policy.torque_problem(sensor_m):
         raise ConfigurationError(
             f"{config.sources[0].path}: controllers.{name}.policy = {choice.written!r} is not "
             f"valid: {problem}"

@@ -8,9 +8,9 @@ import typer
 from pydantic import JsonValue
 from rich.console import Console
 
-from drivers.contract.errors import TenonError
+from drivers.contract.errors import ConfigurationError, TenonError
 from learning.analytic.display import Display
-from learning.analytic.judged import judged, metrics
+from learning.analytic.judged import judged, judged_cases, metrics
 from learning.analytic.plan import load_analytic
 from learning.analytic.trainer import AnalyticTrainer
 from learning.command import make_folder, refused
@@ -20,7 +20,7 @@ from learning.policy.file import SUFFIX, save_policy
 
 def pretrain_analytic(
     config: Annotated[Path, typer.Option(help="The training (YAML): plants, policy, updates.")],
-    out: Annotated[Path, typer.Option(help="Folder to write to.")],
+    out: Annotated[Path, typer.Option(help="Folder to write to; a new or an empty one.")],
     seed: Annotated[
         int, typer.Option(min=0, help="Seed of all chance: same seed, same policy.")
     ] = 0,
@@ -39,14 +39,24 @@ def _pretrain(config: Path, out: Path, seed: int) -> None:
     # Threads only slow networks of this size down.
     torch.set_num_threads(1)
     plan = load_analytic(config)
+    try:
+        trainer, cases = AnalyticTrainer(plan, seed), judged_cases(plan)
+        trainer.policy()
+    except ValueError as error:
+        raise ConfigurationError(f"{config}: {error}") from error
     make_folder(out)
+    if held := sorted(path.name for path in out.iterdir()):
+        raise ConfigurationError(f"the folder {out} is not empty ({held[0]}); name another one")
     console = Console()
-    trainer = AnalyticTrainer(plan, seed)
-    with Display(console, out / "tensorboard", plan.settings.updates) as display:
+    try:
+        shown = Display(console, out / "tensorboard", plan.settings.updates)
+    except OSError as error:
+        raise ConfigurationError(f"cannot write to {out}: {error.strerror}") from error
+    with shown as display:
         while not trainer.is_done:
             display.show(trainer.update())
     policy = trainer.policy()
-    figures = judged(policy, plan)
+    figures = judged(policy, cases, plan)
     path = out / f"policy{SUFFIX}"
     about: dict[str, JsonValue] = {
         "trainer": "learning/pretrain_analytic.py",

@@ -43,13 +43,15 @@ class InsertionTask:
     """One insertion environment with the expert (eq. 6) beside it.
 
     Actions are in units of the residual's range `residual_m` along each axis. The expert acts on
-    the observed state, as the policy does.
+    the observed state, as the policy does. Raises `ValueError` for an expert with an approach.
     """
 
     n_states = len(OBSERVATION)
     n_actions = 3
 
     def __init__(self, config: DualPegConfig, expert: Expert, residual_m: Vector3) -> None:
+        if expert.approach is not None:
+            raise ValueError("the expert has an approach; this task has none")
         self._core = DualPegCore(config, 1)
         box, unit = np.array(expert.step_box_m), np.array(residual_m)
         self._box = (box / unit).astype(np.float32)

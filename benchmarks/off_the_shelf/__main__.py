@@ -52,6 +52,9 @@ def main(
     formulation: Annotated[list[str] | None, typer.Option(help="direct, residual; both.")] = None,
 ) -> None:
     algorithms, forms = algorithm or ALGORITHMS, formulation or FORMULATIONS
+    for asked, valid in ((algorithms, ALGORITHMS), (forms, FORMULATIONS)):
+        if unknown := [name for name in asked if name not in valid]:
+            raise typer.BadParameter(f"{unknown[0]!r} is not one of {', '.join(valid)}")
     out.mkdir(parents=True, exist_ok=True)
     print(describe())
     packages = ("stable-baselines3", "torch", "gymnasium", "numba")
@@ -60,7 +63,7 @@ def main(
     runs: list[Run] = []
     for seed in range(seeds):
         tasks = [Task(PAPER, RESIDUAL, seed, 0, every_round, config)]
-        tasks += [Task(ANALYTIC, f, seed, 0, every_round, analytic) for f in FORMULATIONS]
+        tasks += [Task(ANALYTIC, f, seed, 0, every_round, analytic) for f in forms]
         tasks += [Task(a, f, seed, steps, every, config) for f in forms for a in algorithms]
         for task in tasks:
             runs.append(done(task))

@@ -1,20 +1,27 @@
 """How a policy inserts plants that its training has not drawn."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from learning.analytic.plan import AnalyticPlan
 from learning.evaluation.contenders import Skill
 from learning.evaluation.metrics import Measured, Thresholds, measured
 from learning.evaluation.plant import drawn_plants
-from learning.evaluation.trials import cases_of, insert_each
+from learning.evaluation.trials import Case, cases_of, insert_each
 from learning.policy.policy import Policy
 
 
-def judged(policy: Policy, plan: AnalyticPlan) -> Measured:
-    """Insert the plants that the plan judges on, as `learning/evaluate.py` does."""
-    trial, chosen = plan.settings.trial, plan.settings.judged
+def judged_cases(plan: AnalyticPlan) -> list[Case]:
+    """Draw the plants that the plan judges on; raises `ValueError` if a trial has none of them."""
+    chosen = plan.settings.judged
     plants = drawn_plants(plan.plants.distribution(), chosen.count, chosen.seed)
-    cases = cases_of(plants, chosen.seed)
+    return cases_of(plants, chosen.seed)
+
+
+def judged(policy: Policy, cases: Sequence[Case], plan: AnalyticPlan) -> Measured:
+    """Insert the plants of `judged_cases`, as `learning/evaluate.py` does."""
+    trial = plan.settings.trial
     records = insert_each(Skill(policy), cases, trial.rules())
     return measured(records, Thresholds(trial.step_s, trial.gentle_N))
 

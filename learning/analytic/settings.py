@@ -6,6 +6,7 @@ from typing import Annotated
 from annotated_types import Ge, Gt, Le, MaxLen, MinLen
 from pydantic import Field, model_validator
 
+from drivers.contract.messages import Vector3
 from drivers.contract.settings import DEGREES, MICRO, MILLI, Settings, written
 from learning.evaluation.settings import FixedSettings, TrialSettings
 from learning.policy.expert import Approach, Expert
@@ -22,7 +23,7 @@ _Count = Annotated[int, Ge(1), Le(1_000_000)]
 
 
 class InputSettings(Settings):
-    """What the policy sees, each with the value that the network sees as 1; none is left out."""
+    """What the policy sees, each with the value that the network sees as 1; None: not at all."""
 
     force_N: Annotated[tuple[_Force, _Force, _Force], MILLI] = Field(alias="force_mN")
     torque_Nm: Annotated[tuple[_Torque, _Torque, _Torque], MICRO] | None = Field(
@@ -134,6 +135,11 @@ class AnalyticSettings(Settings):
             approach=None if approach is None else Approach(approach.step_m, approach.depth_m),
         )
 
+    @property
+    def torque_origin_m(self) -> Vector3 | None:
+        """Place that torques are about, or None where the policy sees none."""
+        return None if self.inputs.torque_Nm is None else self.trial.sensor_m
+
     @model_validator(mode="after")
     def _check(self) -> "AnalyticSettings":
         if problems := [*self._problems()]:
@@ -157,3 +163,10 @@ class AnalyticSettings(Settings):
             key = written(OutputSettings, "turn_rad", residual.turn_rad)
             most = written(TrialSettings, "turn_rad", trial.turn_rad)
             yield f"residual.{key} is not valid: must not exceed trial.{most}"
+        if self.inputs.turn_rad is not None and residual.turn_rad is None:
+            yield "inputs.turn_deg is no key where residual.turn_deg is missing: nothing turns"
+        if self.steps > trial.steps_max:
+            yield (
+                f"steps = {self.steps} is not valid: must not exceed "
+                f"trial.steps_max = {trial.steps_max}"
+            )

@@ -21,9 +21,9 @@ class Update(NamedTuple):
     """What the insertions of an update were like, before it."""
 
     reward: float
-    """Mean reward of a step."""
+    """Mean over the insertions of the mean reward of their steps."""
     radial_N: float
-    """Mean radial force."""
+    """Mean radial force over all steps."""
     steps: float
     """Mean number of steps."""
     gradient_norm: float
@@ -103,14 +103,20 @@ class AnalyticTrainer:
         return made
 
     def policy(self) -> Policy:
-        """Return the actor with the processing that it was trained with."""
-        settings = self.plan.settings
-        weights = [weight.detach().numpy() for weight in self.actor.weights]
-        return Policy(
-            inputs=settings.inputs.inputs(),
-            outputs=settings.residual.outputs(),
-            bound=settings.input_bound,
-            layers=tuple(Layer(*pair) for pair in zip(weights[0::2], weights[1::2], strict=True)),
-            expert=self.plan.expert,
-            history=settings.history,
-        )
+        """Return what has been learned so far as cells run it."""
+        return policy_of(self.actor, self.plan)
+
+
+def policy_of(actor: Actor, plan: AnalyticPlan) -> Policy:
+    """Return the actor with the processing that it is trained with."""
+    settings = plan.settings
+    weights = [weight.detach().numpy() for weight in actor.weights]
+    return Policy(
+        inputs=settings.inputs.inputs(),
+        outputs=settings.residual.outputs(),
+        bound=settings.input_bound,
+        layers=tuple(Layer(*pair) for pair in zip(weights[0::2], weights[1::2], strict=True)),
+        expert=plan.expert,
+        history=settings.history,
+        torque_origin_m=settings.torque_origin_m,
+    )

@@ -91,7 +91,7 @@ def load_evaluation(path: Path, count: int | None = None, seed: int | None = Non
             f"tuning.seed = {settings.tuning.seed} is not valid: must differ from plants.seed, or "
             "controllers are judged on the plants that they were tuned on",
         )
-    for line in _step_problems(settings, entries):
+    for line in (*_step_problems(settings, entries), *_torque_problems(settings, entries)):
         problems.add(path, line)
     for name in settings.figures.compared:
         if names and name not in names:
@@ -138,6 +138,15 @@ def _step_problems(settings: EvaluationSettings, entries: Mapping[str, Entry]) -
             if not is_possible:
                 key = written(BeliefSettings, attribute, value)
                 yield f"controllers.{name}.{key} is not valid: must not exceed trial.{limit}"
+
+
+def _torque_problems(settings: EvaluationSettings, entries: Mapping[str, Entry]) -> Iterator[str]:
+    """Yield a line for each policy that reads the torques of a sensor elsewhere."""
+    for name, entry in entries.items():
+        if isinstance(entry.contender, Skill):
+            problem = entry.contender.policy.torque_problem(settings.trial.sensor_m)
+            if problem:
+                yield f"controllers.{name}.policy is not valid: {problem}"
 
 
 def _check_plants(evaluation: Evaluation, path: Path) -> None:

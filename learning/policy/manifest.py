@@ -52,6 +52,7 @@ class Manifest(Settings):
     inputs: tuple[Channel, ...]
     outputs: tuple[Channel, ...]
     history: int = 1
+    torque_origin_m: Vector3 | None = None
     bound: float
     hidden_activation: Literal["relu"]
     output_activation: Literal["tanh"]
@@ -82,6 +83,7 @@ def make_manifest(policy: Policy, about: Mapping[str, JsonValue]) -> Manifest:
             for name, scale in policy.outputs
         ),
         history=policy.history,
+        torque_origin_m=policy.torque_origin_m,
         bound=policy.bound,
         hidden_activation="relu",
         output_activation="tanh",
@@ -141,4 +143,5 @@ def policy_of(manifest: Manifest, layers: tuple[Layer, ...]) -> Policy:
             None if approach is None else Approach(approach.step_m, approach.depth_m),
         ),
         history=manifest.history,
+        torque_origin_m=manifest.torque_origin_m,
     )

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from controllers.messages import Observation
+from drivers.contract.messages import Vector3
 from learning.policy.expert import Expert, check_expert
 from learning.policy.inputs import OUTPUT_UNITS, READINGS, Input, Output
 from simulator.checks import FloatArray, positive
@@ -19,6 +20,8 @@ Float32Array = npt.NDArray[np.float32]
 
 SMALLEST_SCALE, LARGEST_SCALE = 1e-12, 1e12
 """Between them a scale can be divided by without loss."""
+_ORIGIN_TOLERANCE_M = 1e-4
+"""A torque of 10 mN is off by 1 uN m for it, far below the noise of a sensor."""
 LONGEST_HISTORY = 64
 """Most observations that a network sees at once."""
 
@@ -50,6 +53,8 @@ class Policy:
     expert: Expert
     history: int = 1
     """How many observations the network sees, from 1 to `LONGEST_HISTORY`."""
+    torque_origin_m: Vector3 | None = None
+    """Place in frame M of the sensor whose torques it reads; None if it reads none."""
     _input_scale: FloatArray = field(init=False, repr=False)
     _output_scale: FloatArray = field(init=False, repr=False)
 
@@ -59,10 +64,24 @@ class Policy:
         positive("bound", self.bound)
         check_expert(self.expert)
         _check_history(self.history)
+        _check_torque_origin(self)
         object.__setattr__(self, "layers", tuple(_layers(self)))
         scales = [i.scale for i in self.inputs] * self.history
         object.__setattr__(self, "_input_scale", np.array(scales))
         object.__setattr__(self, "_output_scale", np.array([o.scale for o in self.outputs]))
+
+    def torque_problem(self, origin_m: Vector3) -> str:
+        """Return in words why it cannot read the torques of a sensor there, or nothing."""
+        own_m = self.torque_origin_m
+        if own_m is None or np.abs(np.subtract(own_m, origin_m)).max() <= _ORIGIN_TOLERANCE_M:
+            return ""
+        own, other = (
+            f"[{', '.join(f'{1e6 * v:.12g}' for v in place)}] um" for place in (own_m, origin_m)
+        )
+        return (
+            f"it reads torques about {own}, the sensor's are about {other}; "
+            "it must be trained with the place of this sensor"
+        )
 
     @property
     def n_values(self) -> int:
@@ -125,6 +144,18 @@ def _check_history(history: int) -> None:
         raise ValueError(
             f"history is {history!r}; it must be a whole number from 1 to {LONGEST_HISTORY}"
         )
+
+
+def _check_torque_origin(policy: Policy) -> None:
+    reads_torque = any(name.startswith("torque_") for name, _ in policy.inputs)
+    place = policy.torque_origin_m
+    if reads_torque != (place is not None):
+        raise ValueError(
+            f"torque_origin_m is {place!r}; it must be a place if there is an input of torque, "
+            "and None if there is none"
+        )
+    if place is not None and not (len(place) == 3 and np.isfinite(place).all()):
+        raise ValueError(f"torque_origin_m is {place!r}; it must be three finite numbers")
 
 
 def _layers(policy: Policy) -> Iterable[Layer]:

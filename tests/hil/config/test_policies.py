@@ -62,6 +62,12 @@ def turning(scale_rad: float, name: str = "turn_x") -> Policy:
     return replace(policy, outputs=(policy.outputs[0], Output(name, scale_rad)))
 
 
+def about(place_m: tuple[float, float, float]) -> Policy:
+    """Reads torque about a place."""
+    policy = random_policy(seen=("force_x", "torque_y"), answered=("step_z",))
+    return replace(policy, torque_origin_m=place_m)
+
+
 def made(config: CellConfig, name: str) -> Controller:
     return controller_factory(config, name, (1e-3,) * 6, np.random.default_rng(1))()
 
@@ -103,6 +109,13 @@ def made(config: CellConfig, name: str) -> Controller:
             ),
             None,
             None,
+        ),
+        (about((0.0, 0.0, 0.03992)), None, None),
+        (
+            about((0.0, -0.0002, 0.04)),
+            None,
+            "it reads torques about [0, -200, 40000] um, the sensor's are about [0, 0, 40000] um; "
+            "it must be trained with the place of this sensor",
         ),
     ],
 )

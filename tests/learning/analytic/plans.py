@@ -15,7 +15,6 @@ from learning.analytic.contact import wrench_after
 from learning.analytic.plan import AnalyticPlan, load_analytic
 from learning.analytic.plant_batch import PlantBatch
 from learning.networks import Actor
-from learning.policy.policy import Layer, Policy
 from simulator.checks import FloatArray
 from tests.hil.config.cell_files import ROOT, flow
 
@@ -70,20 +69,6 @@ def random_actor(loop: ClosedLoop, last_weight: float = 1.0) -> Actor:
 def zero_actor(loop: ClosedLoop) -> Actor:
     """An actor that leaves the expert alone."""
     return Actor(loop.n_states, loop.n_actions, (4,), 0.0)
-
-
-def policy_of(actor: Actor, chosen: AnalyticPlan) -> Policy:
-    """The actor with its processing, as a cell takes it."""
-    settings = chosen.settings
-    weights = [weight.detach().numpy() for weight in actor.weights]
-    return Policy(
-        settings.inputs.inputs(),
-        settings.residual.outputs(),
-        settings.input_bound,
-        tuple(Layer(*pair) for pair in zip(weights[0::2], weights[1::2], strict=True)),
-        chosen.expert,
-        settings.history,
-    )
 
 
 class Watched:

@@ -1,13 +1,16 @@
 """Files of trainings and of their plants, spoiled, and the line that follows."""
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
+from pydantic import BaseModel
 
 from drivers.contract.errors import ConfigurationError
 from learning.analytic.plan import load_analytic
+from learning.analytic.settings import AnalyticSettings
 from tests.hil.config.cell_files import flow
 from tests.learning.analytic import plans
 from tests.learning.analytic.plans import FILE, PLANTS, Values
@@ -74,6 +77,12 @@ BOX = "trial.step_box_um = [20, 20, 60]"
             0.06,
             "residual.turn_deg = 0.06 is not valid: must not exceed trial.turn_deg = 0.05",
         ),
+        (
+            "residual.turn_deg",
+            None,
+            "inputs.turn_deg is no key where residual.turn_deg is missing: nothing turns",
+        ),
+        ("steps", 1001, "steps = 1001 is not valid: must not exceed trial.steps_max = 1000"),
         ("history", 0, "history = 0 is not valid: must be at least 1 and at most 64"),
         ("history", 65, "history = 65 is not valid: must be at least 1 and at most 64"),
         ("inputs.force_mN", [10, 10], "inputs.force_mN = [10, 10] is not valid: must be"),
@@ -207,3 +216,28 @@ def test_the_shipped_trainings() -> None:
     assert extended.expert.approach is not None
     assert len(extended.settings.inputs.inputs()) == 11
     assert len(extended.settings.residual.outputs()) == 5
+
+
+ELSEWHERE = ("trial.", "reward.")
+"""Groups whose keys another part of the reference explains."""
+
+
+def keys_of(model: type[BaseModel], prefix: str = "") -> Iterator[str]:
+    """Yield every key that is no group of keys."""
+    for name, field in model.model_fields.items():
+        path = f"{prefix}{field.alias or name}"
+        options = get_args(field.annotation) or (field.annotation,)
+        groups = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
+        if groups:
+            yield from keys_of(groups[0], f"{path}.")
+        else:
+            yield path
+
+
+def test_the_reference_names_every_key_and_no_other() -> None:
+    _, text = Path("docs/reference/training.md").read_text().split("## By the gradient")
+    cells = re.findall(r"^\| (`.*?) \|", text, re.MULTILINE)
+    named = {key for cell in cells for key in re.findall(r"`([\w.]+)`", cell)}
+    keys = {key for key in keys_of(AnalyticSettings) if not key.startswith(ELSEWHERE)}
+    last = {key.rpartition(".")[2]: key for key in keys}
+    assert {last.get(name, name) for name in named} - {"trial", "reward"} == keys

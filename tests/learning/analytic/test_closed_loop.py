@@ -97,7 +97,7 @@ def test_an_insertion_ends_at_a_force_limit_or_the_stroke(
 
 
 def test_nothing_is_played_after_the_last_end(tmp_path: Path) -> None:
-    loop, plants = nominal(tmp_path, steps=9_999)
+    loop, plants = nominal(tmp_path, steps=1_000)
     course = played(loop, plants)
     assert course.is_running[-1].any()
     assert len(course.is_running) < 200
@@ -178,6 +178,16 @@ def test_noise_reaches_the_inputs(tmp_path: Path) -> None:
     moving = [*range(8), 10]
     correlation = np.corrcoef(newest[:, moving], rowvar=False)
     assert np.abs(correlation - np.eye(9)).max() < 0.11
+
+
+def test_the_expert_acts_on_what_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In free air its lateral steps are 2 mN of noise times 80 um/N: it does not know better."""
+    training = plans.values() | {"steps": 1}
+    plan = plans.plan(tmp_path, training, plans.plant_values())
+    loop, watched = ClosedLoop(plan.settings, plan.expert), plans.watch(monkeypatch)
+    loop.play(plans.zero_actor(loop), plants_of(plan, 1000), np.random.default_rng(1))
+    lateral_m = watched.steps[1][:, :2]
+    assert lateral_m.std(0) == pytest.approx([1.6e-7, 1.6e-7], rel=0.08)
 
 
 def test_noise_is_drawn_anew_and_frames_move_on(tmp_path: Path) -> None:

@@ -137,6 +137,20 @@ def test_bad_files(tmp_path: Path, good: str, bad: str, line: str) -> None:
     assert str(caught.value) == f"{path}: {line.replace('{folder}', str(tmp_path))}"
 
 
+def test_a_policy_that_reads_torques_of_another_sensor(tmp_path: Path) -> None:
+    path, extended = tmp_path / "evaluation.yaml", f"{ROOT}/policies/extended.safetensors"
+    same = FILE.replace(f"{ROOT}/policies/paper.safetensors", extended)
+    path.write_text(same, encoding="utf-8")
+    assert "skill" in load_evaluation(path).entries
+    path.write_text(same.replace("sensor_um: [0, 0, 40000]", "sensor_um: [0, 0, 39800]"))
+    with pytest.raises(ConfigurationError) as caught:
+        load_evaluation(path)
+    assert str(caught.value) == (
+        f"{path}: controllers.skill.policy is not valid: it reads torques about [0, 0, 40000] um, "
+        "the sensor's are about [0, 0, 39800] um; it must be trained with the place of this sensor"
+    )
+
+
 def test_several_problems_are_told_at_once(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     text = FILE.replace("steps_max: 1000", "steps_max: 0").replace("kind: tuned", "kind: x")

@@ -41,7 +41,8 @@ def random_policy(
         )
         for n, m in pairwise(widths)
     )
-    return Policy(inputs(*seen), outputs(*answered), bound, layers, expert, history)
+    place = (0.0, 0.0, 0.04) if any(name.startswith("torque") for name in seen) else None
+    return Policy(inputs(*seen), outputs(*answered), bound, layers, expert, history, place)
 
 
 def zero_policy(expert: Expert = EXPERT) -> Policy:
@@ -54,10 +55,11 @@ def zero_policy(expert: Expert = EXPERT) -> Policy:
 def same(a: Policy, b: Policy) -> bool:
     """Whether all that two policies are made of is the same, to the bit."""
     arrays = zip(a.layers, b.layers, strict=True)
-    return (a.inputs, a.outputs, a.bound, a.expert, a.history) == (
+    return (a.inputs, a.outputs, a.bound, a.expert, a.history, a.torque_origin_m) == (
         b.inputs,
         b.outputs,
         b.bound,
         b.expert,
         b.history,
+        b.torque_origin_m,
     ) and all(np.array_equal(x, y) for one, two in arrays for x, y in zip(one, two, strict=True))

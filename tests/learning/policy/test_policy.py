@@ -202,3 +202,20 @@ INFINITE = np.full((3, 4), 1e39)
 def test_what_no_policy_can_be_made_of(changes: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         dataclasses.replace(zero_policy(), **changes)
+
+
+@pytest.mark.parametrize(
+    ("seen", "place"),
+    [
+        ("force_x", (0.0, 0.0, 0.04)),
+        ("torque_x", None),
+        ("torque_x", (0.0, 0.0, math.inf)),
+        ("torque_x", (0.0, 0.0)),
+    ],
+)
+def test_whoever_reads_torque_says_about_which_place(
+    seen: str, place: tuple[float, ...] | None
+) -> None:
+    policy = random_policy(seen=(seen,))
+    with pytest.raises(ValueError, match=r"torque_origin_m is .*; it must be"):
+        dataclasses.replace(policy, torque_origin_m=place)

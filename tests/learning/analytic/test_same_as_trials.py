@@ -10,6 +10,7 @@ import torch
 
 from learning.analytic.closed_loop import ClosedLoop
 from learning.analytic.plant_batch import drawn_batch
+from learning.analytic.trainer import policy_of
 from learning.evaluation.plant import drawn_plants
 from learning.evaluation.trial import Trial, insert
 from learning.networks import Actor
@@ -50,7 +51,7 @@ def ways(
         course = loop.play(actor, batch, np.random.default_rng(0))
     seen, steps = np.array(watched.wrenches[1:]), np.array(watched.steps[1:])
     lengths = course.is_running.numpy().sum(0).astype(int)
-    controller = SkillController(plans.policy_of(actor, chosen))
+    controller = SkillController(policy_of(actor, chosen))
     found = []
     rules = chosen.settings.trial.rules()
     for number, plant in enumerate(drawn_plants(distribution, PLANTS, SEED)):
