@@ -113,6 +113,32 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
     assert ran.stderr == f"error: cannot create the folder {config}: File exists\n"
 
 
+def test_a_folder_that_holds_something(tmp_path: Path) -> None:
+    """Nothing of another run is overwritten or mixed with."""
+    out = tmp_path / "run"
+    out.mkdir()
+    (out / "policy.safetensors").write_bytes(b"another")
+    ran = pretrain(short(tmp_path), out)
+    assert ran.exit_code == 2
+    said = f"error: the folder {out} is not empty (policy.safetensors); name another one\n"
+    assert ran.stderr == said
+    assert (out / "policy.safetensors").read_bytes() == b"another"
+
+
+def test_a_policy_that_could_not_be_written_is_not_trained(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A scale that no policy takes is told before the first update, with no folder made."""
+    training = plans.values()
+    training["inputs"]["force_mN"] = [1e-10, 10, 100]
+    monkeypatch.setattr(AnalyticTrainer, "update", None)
+    config = plans.write(tmp_path, training, plans.plant_values())
+    ran = pretrain(config, tmp_path / "run")
+    assert ran.exit_code == 2
+    assert ran.stderr.startswith(f"error: {config}: scale of input 'force_x' is 1e-13; it must be")
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_training_that_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(self: AnalyticTrainer) -> None:
         raise TrainingError("the gradient is not finite in update 1")
