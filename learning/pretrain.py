@@ -12,7 +12,7 @@ from drivers.contract.errors import TenonError
 from learning.command import refused
 from learning.policy.file import save_policy
 from learning.training.checkpoint import configuration
-from learning.training.display import Display
+from learning.training.display import RoundDisplay
 from learning.training.evaluation import Insertions, insert_all
 from learning.training.plan import load_plan
 from learning.training.policy_of import policy_of
@@ -53,7 +53,7 @@ def _pretrain(config: Path, out: Path, seed: int) -> None:
     if played := folder.take_up(trainer):
         console.print(f"Goes on after round {played}.", highlight=False)
     total = plan.settings.rounds
-    with Display(console, folder.scalars, total, trainer.rounds) as display:
+    with RoundDisplay(console, folder.scalars, total, trainer.rounds) as display:
         while not trainer.is_done:
             display.show(trainer.play())
             if len(trainer.rounds) % plan.settings.checkpoint_rounds == 0 or trainer.is_done:

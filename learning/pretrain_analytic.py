@@ -9,7 +9,7 @@ from pydantic import JsonValue
 from rich.console import Console
 
 from drivers.contract.errors import ConfigurationError, TenonError
-from learning.analytic.display import Display
+from learning.analytic.display import UpdateDisplay
 from learning.analytic.judged import judged, judged_cases, metrics
 from learning.analytic.plan import load_analytic
 from learning.analytic.trainer import AnalyticTrainer
@@ -49,7 +49,7 @@ def _pretrain(config: Path, out: Path, seed: int) -> None:
         raise ConfigurationError(f"the folder {out} is not empty ({held[0]}); name another one")
     console = Console()
     try:
-        shown = Display(console, out / "tensorboard", plan.settings.updates)
+        shown = UpdateDisplay(console, out / "tensorboard", plan.settings.updates)
     except OSError as error:
         raise ConfigurationError(f"cannot write to {out}: {error.strerror}") from error
     with shown as display:
@@ -62,7 +62,7 @@ def _pretrain(config: Path, out: Path, seed: int) -> None:
         "trainer": "learning/pretrain_analytic.py",
         "seed": seed,
         "updates": len(trainer.updates),
-        "insertions": trainer.insertions,
+        "insertions": len(trainer.updates) * plan.settings.insertions,
         "training_steps": trainer.steps,
         "configuration": plan.configuration(),
         "metrics": {**metrics(figures)},

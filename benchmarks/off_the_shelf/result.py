@@ -40,6 +40,10 @@ def lines(runs: Sequence[Run]) -> Iterator[str]:
     for formulation in dict.fromkeys(run.task.formulation for run in theirs):
         yield from _against([r for r in theirs if r.task.formulation == formulation], ours)
     yield ""
+    yield "Median time of ours to the best of each, in s, and how many times less that is:"
+    for name, group in by_name(theirs):
+        yield f"  {name}: {_to_best(group, ours)}"
+    yield ""
     yield "Median wall-clock time over seeds to all start poses inserted, and to a score (then with"
     yield "all inserted), in s; - is never in half of the seeds:"
     yield f"{'':<19}{'inserted':>9}" + "".join(f"{level:>8.2f}" for level in LEVELS)
@@ -51,7 +55,7 @@ def lines(runs: Sequence[Run]) -> Iterator[str]:
 
 
 def _against(theirs: Sequence[Run], ours: Sequence[Run]) -> Iterator[str]:
-    best = max(theirs, key=lambda run: (run.best.quality.inserted, run.best.quality.score))
+    best = _best_of(theirs)
     goal = best.best
     yield ""
     yield f"Best of the library, {best.task.formulation}: {best.task.name}, seed {best.task.seed}:"
@@ -61,6 +65,22 @@ def _against(theirs: Sequence[Run], ours: Sequence[Run]) -> Iterator[str]:
         for run, point in zip(group, reached, strict=True):
             yield f"  {name}, seed {run.task.seed}: {_compared(run, point, best)}"
         yield f"  {name}: {_verdict(median(_seconds(point) for point in reached), goal)}"
+
+
+def _to_best(theirs: Sequence[Run], ours: Sequence[Run]) -> str:
+    goal = _best_of(theirs).best
+    if goal.quality.inserted == 0.0:
+        return "inserts nothing"
+    told = []
+    for name, group in by_name(ours):
+        seconds = median(_seconds(run.until(goal.quality)) for run in group)
+        shown = f"{seconds:.2f} ({goal.wall_s / seconds:.1f})" if 0.0 < seconds < inf else "-"
+        told.append(f"{name} {shown}")
+    return f"score {goal.quality.score:.4f} at {goal.wall_s:.1f}; {', '.join(told)}"
+
+
+def _best_of(runs: Sequence[Run]) -> Run:
+    return max(runs, key=lambda run: (run.best.quality.inserted, run.best.quality.score))
 
 
 def _verdict(seconds: float, goal: Point) -> str:

@@ -58,15 +58,16 @@ class AnalyticTrainer:
         )
         self.updates: list[Update] = []
         """Those that were made."""
-        self.insertions = 0
-        """That were played."""
-        self.steps = 0
-        """That all insertions have made."""
 
     @property
     def is_done(self) -> bool:
         """Whether all updates were made."""
         return len(self.updates) >= self.plan.settings.updates
+
+    @property
+    def steps(self) -> int:
+        """Steps that all insertions have made."""
+        return round(sum(made.steps for made in self.updates) * self.plan.settings.insertions)
 
     def update(self) -> Update:
         """Play one batch of insertions and step the actor.
@@ -91,8 +92,6 @@ class AnalyticTrainer:
             group["lr"] = share_left * settings.actor.learning_rate
         self._optimiser.step()
         steps = course.is_running.sum().item()
-        self.insertions += settings.insertions
-        self.steps += round(steps)
         made = Update(
             reward=-loss.item(),
             radial_N=course.radial_N.sum().item() / steps,

@@ -197,6 +197,19 @@ def test_time_to_the_quality_of_their_best(reached_s: tuple[float | None], said:
     assert f"  analytic residual: {said}" in lines
 
 
+TWO = ((0, 3.0), (1, 5.0))
+"""Seeds, and when they get better than the expert."""
+
+
+def test_time_to_the_best_of_each() -> None:
+    ours = [run("analytic", s, (0.0, 1.0, 0.6), (at, 1.0, 0.8), (9.0, 1.0, 0.95)) for s, at in TWO]
+    idle = run("ddpg", 0, (0.0, 0.0, 0.0), (30.0, 0.0, 0.0))
+    lines = [*result.lines([*ours, *THEIRS, idle])]
+    assert "  td3 direct: score 0.9000 at 60.0; analytic residual 9.00 (6.7)" in lines
+    assert "  sac direct: score 0.7000 at 50.0; analytic residual 4.00 (12.5)" in lines
+    assert "  ddpg direct: inserts nothing" in lines
+
+
 def test_table_of_times() -> None:
     lines = [*result.lines([run("analytic", 0, (0.0, 1.0, 0.91), (7.0, 1.0, 0.95)), *THEIRS])]
     rows = {line[:19].strip(): line.split()[2:] for line in lines[-3:]}

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from learning.environments import PAPER, Outcome
-from learning.policy.expert import Expert
+from learning.policy.expert import Approach, Expert
 from learning.task import InsertionTask, Start
 
 UM = 1e-6
@@ -59,3 +59,9 @@ def test_steps_that_run_out_are_not() -> None:
     for _ in range(1000):
         step = insertion.step(np.zeros(3, dtype=np.float32))
     assert (step.outcome, step.terminal) == (Outcome.OUT_OF_STEPS, False)
+
+
+def test_an_expert_with_an_approach_is_refused() -> None:
+    expert = Expert(1.6e-4, 5e-5, (2e-5, 2e-5, 6e-5), Approach(2e-6, 1e-5))
+    with pytest.raises(ValueError, match="the expert has an approach; this task has none"):
+        InsertionTask(PAPER, expert, (1e-6, 1e-6, 3e-5))
